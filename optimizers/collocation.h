@@ -62,7 +62,7 @@ struct ControlBound {
 
 struct ControlProblem {
   ControlledSystem* system = nullptr;
-  Eigen::VectorXd start = {};                   ///< states at t = 0
+  Eigen::VectorXd start = {};             ///< states at t = 0
   std::vector<ControlBound> bounds = {};  ///< bounds of each control; the slews must be finite for all controls or for none
   /// Conditions on the states at the end of every piece of the mesh except the last.
   std::vector<StateCondition> on_the_way = {};

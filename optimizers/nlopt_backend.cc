@@ -27,7 +27,7 @@ constexpr double step_tolerance_inside_mlsl = 1e-4;
 
 struct Callback {
   BudgetedObjective& budgeted;
-  bool with_conditions;             ///< true when the method uses the conditions of the problem
+  bool with_conditions;  ///< true when the method uses the conditions of the problem
   /// For DIRECT: the value that NLopt's middle, 0.5, of each variable means; empty: NLopt's values are used as they are.
   std::vector<double> bent_middle;
 

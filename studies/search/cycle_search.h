@@ -30,7 +30,7 @@ struct CycleSearchOptions {
   std::string family = {};  ///< waveform families of the closing waveform, as for families_of(); empty: default families
   /// Number of simulated candidates: a third each for the closing, the opening, and both together.
   long max_evaluations = 3000;
-  std::size_t cycles = 10;      ///< number of cycles over which the best pair of waveforms is simulated
+  std::size_t cycles = 10;  ///< number of cycles over which the best pair of waveforms is simulated
   std::uint64_t seed = 1;
   int jobs = 1;
 };

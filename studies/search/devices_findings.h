@@ -122,7 +122,7 @@ struct DevicesFindings {
   std::vector<FrontPoint> front;       ///< the Pareto front of candidate waveforms, sorted by time of first contact
   /// Performance by error of the measured dynamic pull-in voltage, the least error first; empty if devices are not calibrated.
   std::vector<CalibrationError> by_error;
-  HoldWindows windows;          ///< range of the hold voltage in which devices stay closed, by electrode
+  HoldWindows windows;  ///< range of the hold voltage in which devices stay closed, by electrode
   /// Candidates for the best waveform, the best first, with their results on the devices on which it is chosen.
   std::vector<RaceEntry> race;
   /// Conditions of the search on figures, and the share of devices that fulfil them under the best waveform.

@@ -107,8 +107,8 @@ struct Limit {
   /// Impact velocity of a slow approach through stable equilibria in the time in which the contact force of the plain step gets
   /// steady: quasi_static_speed() [m/s].
   double quasi_static = std::numeric_limits<double>::quiet_NaN();
-  LeastTime touch;                      ///< least time of a first contact at the permitted impact velocity
-  LeastTime rest;                       ///< least time of a first contact with every mode at rest
+  LeastTime touch;  ///< least time of a first contact at the permitted impact velocity
+  LeastTime rest;   ///< least time of a first contact with every mode at rest
   /// The quickest bounce-free closing; if no closing is bounce-free, that with the lowest rebound.
   std::optional<LimitLanding> landing;
   std::vector<LeastTime> over_peak, over_velocity;

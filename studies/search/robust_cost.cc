@@ -22,8 +22,7 @@ constexpr double most_violation = 10;
 
 double value_of(const DeviceOutcome& outcome, const Condition& condition) { return outcome.of(condition.figure); }
 
-// Relative accuracy of closings for ranking candidate waveforms; results on fresh devices (new to the search) have the accuracy
-// of the scene.
+// Relative accuracy of the quadrature in closings that only rank candidate waveforms; the final evaluation has the scene's.
 constexpr double ranking_accuracy = 1e-4;
 
 PreparedScene for_ranking(const PreparedScene& given) {
@@ -170,8 +169,8 @@ std::vector<Signal> RobustCost::signals(const std::vector<Waveform>& waveforms, 
                                : setting_.given.applied(waveforms);
 }
 
-// Finds the gains of the devices' voltage sources. Drive signals that differ from device to device only by a gain are prepared
-// once, since a sampled waveform has many breakpoints.
+// Computes the gains of every device's voltage sources. If the drive signals of devices differ by gains alone, they are
+// prepared once for all devices, since a sampled waveform has many breakpoints.
 void RobustCost::find_gains() {
   if (std::ranges::none_of(ensemble_.units, [&](const DeviceUnits& units) { return drives_.differ(units); })) return;
   ungained_levels_ = hold_levels(drives_.without_gains(setting_.drives({})));
@@ -185,8 +184,8 @@ void RobustCost::find_gains() {
   }
 }
 
-// Returns the state of the closed device k under the hold levels of `signals`. All devices count as held if the nominal device
-// is not kept closed.
+// Returns the closed state of device k under the hold levels of `signals`. is_held is true for every device if not even the
+// nominal device stays closed: the search must then not penalise open devices.
 RobustCost::Kept RobustCost::kept(std::size_t k, const std::vector<Signal>& signals) const {
   const Hold hold = hold_of(*ensemble_.devices[k].model, signals, nominal_closed_);
   return {.is_held = !nominal_closed_ || hold.is_held,
@@ -310,8 +309,8 @@ bool RobustCost::is_told(std::span<const DeviceOutcome> outcomes) const {
                             : risk(scores(outcomes), aim_.measure.risk) < (1 - rounding) * worst_score;
 }
 
-// Returns the measure of risk of the devices' scores, with care for failing devices: the standard deviation of all scores would
-// decrease if most devices fail.
+// Returns the measure of risk of the devices' scores (costs s_k). For mean+sigma the failing devices count separately: the
+// standard deviation of all scores would decrease again if most devices fail.
 double RobustCost::risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores, const Risk& measure) {
   if (measure.kind != RiskKind::mean_sigma || std::ranges::none_of(outcomes, fails)) return risk(scores, measure);
   std::vector<double> others;

@@ -42,22 +42,24 @@
 
 namespace softland {
 
-/// Replaces limits of conditions that refer to the plain step by numbers: the 95th percentile of the figure under the plain
-/// step, whose outcomes are `of_step`. Throws InvalidInput if this percentile does not exist.
+/// Replaces each limit that is relative to the plain step by a number: the 95th percentile of the figure over the outcomes
+/// `of_step` under the plain step. Throws InvalidInput if this percentile does not exist.
 [[nodiscard]] std::vector<Condition> beside_step(std::vector<Condition> conditions, std::span<const DeviceOutcome> of_step);
 
 /// The share of devices that have to fulfil a condition of the search.
 inline constexpr double constrained_share = 0.95;
 
-/// The time until contact that costs nothing in a search; later contact is penalised.
+/// The part of a device's time until contact that adds nothing to the cost: users wait as long under the plain step, which
+/// bounces.
 struct FreeTime {
-  /// The compared time until contact, a member of Metrics: of first contact, settling or steady force.
+  /// Member of Metrics that is the time until contact: of first contact, of permanent contact (settling), or of a steady force.
   double Metrics::*figure = &Metrics::initial_contact_time;
-  /// 95th percentile of this time under the plain step [s]; 0: only the median of first contact costs, infinite: no time costs.
+  /// 95th percentile of the time `figure` under the plain step [s]. 0: only the median of first contact adds to the cost;
+  /// infinite: no time adds to the cost.
   double until = 0;
 };
-/// Returns the time until contact under the plain step, from the devices' outcomes `of_step`. The time is 0 if fewer than 95 %
-/// of the devices touch. Throws no exception.
+/// Returns the time until contact that adds nothing to the cost, from the outcomes `of_step` of devices under the plain step; 0
+/// if fewer than 95 % of the devices make contact. Throws no exception.
 [[nodiscard]] FreeTime free_time(std::span<const DeviceOutcome> of_step);
 
 struct RobustAim {
@@ -66,35 +68,36 @@ struct RobustAim {
   FreeTime free = {};
 };
 
-/// Devices, and the exact values of the scale factors that a per-device calibration measures.
+/// Devices, and for each the exact factors that a per-device calibration measures.
 struct CalibratedEnsemble {
   std::vector<SampledDevice> devices;
-  std::vector<DeviceUnits> exact;  ///< exact scale factors of the devices' waveforms; 1 for an invalid device
+  std::vector<DeviceUnits> exact;  ///< exact factors on the devices' waveforms; 1 for an invalid device
 };
-/// Builds the devices and computes their measured quantities, pull-in voltages with the relative `precision`. Throws
-/// Interrupted if `progress` asks to stop.
+/// Builds the devices, and computes their quantities for a calibration without measurement error, pull-in voltages to the
+/// relative `precision`. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] CalibratedEnsemble calibrate_all(const Ensemble& ensemble, const MeasuredQuantities& quantities, double precision,
                                                int jobs, const Progress& progress = {});
-/// Relative precision of pull-in voltages for comparing devices, far finer than any instrument. With a slow gas film, whose
-/// motion just above pull-in takes long, pull-in voltages then take a sixth of the time that dynamic_pull_in_precision takes.
+/// Relative precision of computed pull-in voltages that scale the waveforms of devices, far finer than any instrument. If the
+/// gas film is slow, motion just above pull-in takes long; computing pull-in voltages to this precision takes a sixth of the
+/// time for dynamic_pull_in_precision.
 inline constexpr double compared_precision = 1e-5;
 
 /// Devices, with the factors by which a per-device calibration scales their waveforms.
 struct BuiltEnsemble {
   std::vector<SampledDevice> devices;
-  std::vector<DeviceUnits> units;  ///< measured factors by which each device's waveforms are scaled, relative to the nominal
-                                   ///< device
+  /// Measured factors on each device's waveforms, relative to those of the nominal device.
+  std::vector<DeviceUnits> units;
 };
-/// Returns the devices with their measured scale factors: exact ones with random errors of the calibration `known`, which are
-/// functions of `seed` and the number of the device. `known` must use only quantities that `calibrated` has. A device that
-/// cannot be measured is refused.
+/// Returns the devices with their measured factors: the exact ones with random errors of the calibration `known`, which depend
+/// only on `seed` and the number of the device. `calibrated` must contain the quantities of `known`. A device that cannot be
+/// measured is marked as refused.
 [[nodiscard]] BuiltEnsemble known_as(CalibratedEnsemble calibrated, const MeasuredUnits& known, std::uint64_t seed);
-/// Builds the devices with their measured scale factors. Throws Interrupted if `progress` asks to stop.
+/// Builds the devices, with their measured factors as by known_as(). Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const MeasuredUnits& known, std::uint64_t seed, int jobs,
                                       const Progress& progress = {});
 
-/// Builds devices for ranking candidate waveforms, with closings of an accuracy of 1e-4 at best. The random devices depend on
-/// `seed` and `which`. Throws Interrupted if `progress` asks to stop.
+/// Builds devices for ranking candidate waveforms, with a quadrature no finer than ranking needs. The random devices depend on
+/// `seed` and on the number `which` of the sample. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] BuiltEnsemble own_devices(const SearchSetting& setting, const MeasuredUnits& known, std::uint64_t count,
                                         std::uint64_t seed, std::uint64_t which, int jobs, const Progress& progress);
 
@@ -111,14 +114,15 @@ class RobustCost {
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes) const { return value(outcomes, aim_); }
   /// Returns the cost of the outcomes by another aim (measure of risk and conditions) than that of the constructor.
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
-  /// Returns the measure of risk R(s) of the outcomes alone, without time and conditions.
+  /// Returns the measure of risk R(s) alone, without the terms of the cost for failing devices, time and conditions.
   [[nodiscard]] double measured(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
-  /// Simulates all devices under the plain step until 95 % of them carry a steady contact force, or for the longest permitted
-  /// run.
+  /// Simulates all devices under the plain step, longer and longer until 95 % of them carry a steady contact force, or up to
+  /// eight times the first duration.
   [[nodiscard]] std::vector<DeviceOutcome> close_by_step(int jobs) const;
-  /// Simulates all devices; after first contact for the scene's simulated time or until `free` [s], whichever is longer.
+  /// Simulates all devices. After first contact the simulation lasts for the scene's simulated time or for `free` [s],
+  /// whichever is longer.
   [[nodiscard]] std::vector<DeviceOutcome> close_until(const std::vector<Waveform>& waveforms, double free, int jobs) const;
-  /// False if the measure of risk would be the same if all devices failed: the tail consists of failing devices only, or no
+  /// Returns false if the measure of risk says nothing about the waveform: its tail consists of failing devices alone, or no
   /// device fulfils the condition of a yield.
   [[nodiscard]] bool is_told(std::span<const DeviceOutcome> outcomes) const;
 
@@ -131,7 +135,7 @@ class RobustCost {
   [[nodiscard]] double score(const DeviceOutcome& outcome) const;
 
  private:
-  // State of a closed device under its hold levels.
+  // The closed state of a device under its hold levels.
   struct Kept {
     bool is_held = true;
     double steady_force = Metrics::unset;  // contact force from which on the contact counts as steady [N]
@@ -156,25 +160,26 @@ class RobustCost {
   BuiltEnsemble ensemble_;
   DeviceDrives drives_;
   std::optional<std::vector<std::vector<double>>>
-      gains_;  // gains of every device's voltage sources; none if the drive signals differ by more than gains
-  std::vector<double> ungained_levels_;  // hold levels of the plain step, from voltage sources with a gain of 1 [V]
+      gains_;  // gains of every device's voltage sources; empty if the drive signals of devices differ by more than gains
+  std::vector<double> ungained_levels_;  // hold levels of the plain step at gain 1 [V]
   Vectors vectors_;
   DeviceOutcome step_;  // outcome of the nominal device under the plain step
   // Closed equilibrium of the nominal device under the hold levels; none if these do not keep the device closed.
   std::optional<ClosedEquilibrium> nominal_closed_;
-  std::vector<double> levels_;  // hold levels of the nominal device [V]
-  std::vector<Kept> kept_;      // state of each closed device under the hold levels
-  // Simulated time after first contact, after the last breakpoint, and for waiting for a contact [s].
+  std::vector<double> levels_;  // hold levels of the plain step on the nominal device [V]
+  std::vector<Kept> kept_;      // closed state of each device under these hold levels
+  // Simulated time after first contact, least time in contact after the last breakpoint, and longest wait for first contact
+  // after the last breakpoint [s].
   double window_, tail_, wait_;
 };
 
-/// True if a device does not close and stay closed, cannot be simulated, or is invalid.
+/// True if the device does not close, opens again under its hold levels, cannot be simulated, or has invalid parameters.
 [[nodiscard]] bool fails(const DeviceOutcome& outcome);
 
-/// Returns the time until contact of a device, by FreeTime::figure [s]: the end of the simulation if the device does not reach
-/// that contact, infinite if the device fails.
+/// Returns the time until contact of a device, by the member `figure` of Metrics [s]. If the device does not reach that
+/// contact, this is the end of the simulation; infinite if the device fails.
 [[nodiscard]] double waited(const DeviceOutcome& outcome, double Metrics::*figure);
-/// Returns the 95th percentile over the devices of the time until contact by FreeTime::figure [s].
+/// Returns the 95th percentile over the devices of the time until contact, by the member `figure` of Metrics [s].
 [[nodiscard]] double waited(std::span<const DeviceOutcome> outcomes, double Metrics::*figure);
 
 [[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Condition& condition);

@@ -19,16 +19,16 @@ namespace softland {
 namespace {
 
 constexpr int nominal_searches = 2;
-constexpr std::size_t winners_taken = 4;  // number of best points that are taken from each search on the nominal device
-constexpr double nominal_time = 0.05;     // share of a time budget that each search on the nominal device may take
+constexpr std::size_t winners_taken = 4;  // best points taken from each nominal search
+constexpr double nominal_time = 0.05;     // share of a time budget for each nominal search
 constexpr std::uint64_t selection_devices = 512;
 constexpr double apart = 0.08;  // least distance of two starting points, as a share of the variables' ranges
 
-// The effort of finding starting points, depending on the budget.
+// The effort of finding starting points, which depends on the budget.
 struct StartRound {
   long nominal_evaluations;  // number of evaluations of each search on the nominal device
   std::uint64_t box_points;
-  std::size_t contenders;  // number of starting points that are tried on more than the first 8 devices
+  std::size_t contenders;  // number of starting points that are tried on more than the first `stages[0]` devices
 };
 StartRound start_round(long budget) {
   return {.nominal_evaluations = std::clamp(budget / 50, 1L, 1000L),
@@ -36,7 +36,7 @@ StartRound start_round(long budget) {
           .contenders = static_cast<std::size_t>(std::clamp(budget / 2000, 1L, 24L))};
 }
 
-// Rounds (stages) of the search. Closings are shares of the budget that is left after finding starting points.
+// Rounds (stages) of the search. The closings are shares of the budget that is left when the starting points are found.
 constexpr std::array robust_rounds{Round{.contenders = 6, .devices = 32, .closings = 0.4, .step = 0.15},
                                    Round{.contenders = 2, .closings = 0.35, .step = 0.06},
                                    Round{.contenders = 1, .closings = 0.25, .step = 0.025}};
@@ -57,7 +57,7 @@ double distance(const Point& a, const Point& b, const std::vector<Variable>& var
   return farthest;
 }
 
-// Returns the `count` best candidate waveforms with a least distance between two of them, which is reduced until there are
+// Returns the `count` best candidate waveforms that differ from each other by a least distance, which is halved until there are
 // enough candidates.
 std::vector<Candidate> best_apart(std::vector<Candidate> all, std::size_t count, const std::vector<Variable>& variables) {
   std::stable_sort(all.begin(), all.end(), is_better);
@@ -110,8 +110,8 @@ class HalvingSearch {
   }
 
   [[nodiscard]] long closings() const { return budget_.taken(); }
-  /// Returns the number of candidate waveforms whose evaluation on all devices was begun, even if the evaluation was given up
-  /// early.
+  /// Returns the number of candidate waveforms in the log: those that were to be tried on all devices, even if some were given
+  /// up on the first devices.
   [[nodiscard]] long evaluations() const { return static_cast<long>(log_.evaluations().size()); }
   [[nodiscard]] std::vector<Evaluation> improvements() const { return improvements_of(log_.evaluations()); }
   [[nodiscard]] Termination termination() const {
@@ -121,13 +121,13 @@ class HalvingSearch {
   }
 
  private:
-  // Adds a candidate waveform to the log if it was tried on all devices; otherwise only reports progress.
+  // Adds a candidate waveform to the log if it was to be tried on all devices; otherwise only reports progress.
   void note(bool on_all, long index, const Point& x, double value) {
     if (on_all) return log_.note({.index = index, .value = value, .x = x});
     log_.tell();
   }
 
-  // Finds waveforms that close the nominal device softly, by searches on the nominal device.
+  // Searches on the nominal device alone, and returns the best points: they close the nominal device softly.
   std::vector<Point> nominal_winners() {
     std::vector<Point> all;
     for (int k = 0; k < nominal_searches && !budget_.over(); ++k) {
@@ -178,8 +178,7 @@ class HalvingSearch {
     return best_apart(std::move(all), robust_rounds[0].contenders, variables_);
   }
 
-  // Returns the share of each search of a round (stage) in the closings and in the remaining time. Also reserves a range of log
-  // indices for each search.
+  // Returns the closings and the time of one search in a round (stage). Also reserves log indices for each of the searches.
   RoundShare share(const Round& round, std::size_t contenders) {
     const auto count = static_cast<long>(contenders);
     const RoundShare each{.closings = static_cast<long>(round.closings * left_) / count,
@@ -191,8 +190,8 @@ class HalvingSearch {
     return each;
   }
 
-  // Searches from a candidate waveform and replaces it by the result of the search. If candidate and result were tried on all
-  // devices, only a better result replaces the candidate.
+  // Searches from a candidate and replaces it by the result. If the whole search used all devices, a worse result does not
+  // replace the candidate; otherwise the result is tried on all devices.
   void search(Candidate& candidate, Turn turn, Chain chain, SearchBudget& part) {
     long index = first_index_ + static_cast<long>(turn.number) * indices_of_search_;
     const bool on_all = chain.devices >= cost_.devices();
@@ -212,7 +211,7 @@ class HalvingSearch {
     note(true, index, candidate.x, candidate.value);
   }
 
-  // Returns the best candidate waveforms of all rounds (stages of the search) so far, which continue in the next round.
+  // Returns the best candidate waveforms of all rounds (stages of the search) so far; the next round begins at these.
   std::vector<Candidate> select(const std::vector<Candidate>& ends, std::size_t round) {
     found_.insert(found_.end(), ends.begin(), ends.end());
     leaders_.insert(leaders_.begin(), ends.begin(), ends.end());
@@ -231,13 +230,13 @@ class HalvingSearch {
   EvaluationLog log_;
   // Candidate waveforms that continue in the next round (stage); results of all rounds.
   std::vector<Candidate> leaders_, found_;
-  // Closings left for all rounds (stages of the search); sum of the remaining rounds' shares of them.
+  // Closings for all rounds together (stages of the search), and the sum of Round::closings over the remaining rounds.
   double left_ = 0, shares_left_ = 0;
   long next_index_ = 0;  // least log index that no round (stage of the search) has used
   long first_index_ = 0, indices_of_search_ = 0;
 };
 
-// Returns the candidate waveform that is best on devices that the search has not used.
+// Returns the candidate waveform with the least cost over the devices of `others`, which the search has not used.
 Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setting, const RobustCost& others, int jobs) {
   candidates = best_apart(std::move(candidates), robust_rounds[0].contenders + 1, setting.space.variables());
   Candidate winner = candidates.front();
@@ -289,7 +288,7 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
 // Reduces a default budget if the scene's closings are slow, and reports the estimated work.
 void fit_robust_budget(const SearchSetting& setting, OptimizeOptions& options, std::uint64_t verdict) {
   if (!options.counts_work && !options.on_estimate) return;
-  constexpr double rows = 4;  // work per fresh device over the scene's whole simulated time, in closings of the search
+  constexpr double rows = 4;  // work of the final evaluation per device, in closings of the search
   const ClosingWork one = closing_work(setting);
   const long asked = options.max_evaluations;
   const bool in_lanes = why_not_in_lanes(setting.given.model).empty();
@@ -340,7 +339,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& given
   std::vector<std::string> names;
   for (const Variable& v : out.variables) names.push_back(v.name);
   if (options.on_start) options.on_start({.families = {names}});
-  options.memory = given.memory;  // the caller may create the memory of evaluations in on_start
+  options.memory = given.memory;  // on_start may have created the memory of evaluations
   const std::vector<DeviceOutcome> of_step = cost.close(setting.drives({}), 0, cost.devices(), options.jobs);
   robust.aim.conditions = beside_step(std::move(robust.aim.conditions), of_step);
   out.baseline_cost = cost.value(of_step);

@@ -25,21 +25,21 @@
 namespace softland {
 
 inline constexpr long default_closings = 60'000;
-/// Default waveform families: with the same voltages for all devices, and with a per-device calibration.
+/// Default waveform family if all devices get the same voltages, and default with a per-device calibration.
 inline constexpr std::string_view default_robust_family = "knots", default_calibrated_family = "catch";
 inline constexpr std::uint64_t most_searched = 100'000;  ///< largest number of devices of a search, which are all in memory
 
 struct RobustOptions {
   RobustAim aim;
-  std::uint64_t samples = 128;   ///< number of varied devices on which candidate waveforms are tried
-  std::uint64_t verdict = 2000;  ///< number of fresh devices (new to the search) on which the best waveform is evaluated
+  std::uint64_t samples = 128;                 ///< number of varied devices on which candidate waveforms are tried
+  std::uint64_t verdict = 2000;                ///< fresh devices (new to the search) for the final evaluation
   std::function<double()> clock = wall_clock;  ///< clock that measures a time budget [s]
 };
 
 struct FulfilledCondition {
   std::string text;    ///< text of the condition on a figure
   Yield share;         ///< share of fresh devices (new to the search) that fulfil the condition
-  bool holds = false;  ///< true if constrained_share of the fresh devices (new to the search) fulfil the condition
+  bool holds = false;  ///< true if constrained_share of the devices fulfil the condition
 };
 [[nodiscard]] FulfilledCondition fulfilled(const std::vector<DeviceOutcome>& outcomes, const Condition& condition);
 
@@ -49,15 +49,15 @@ struct RobustFindings {
   /// Number of devices in the search, number of fresh devices (new to the search), and number of closings in the search.
   double devices = Metrics::unset, fresh_devices = Metrics::unset, closings = Metrics::unset;
   double cost_on_searched = Metrics::unset;  ///< cost of the best waveform on the devices of the search
-  /// Share of the fresh devices (new to the search) that do not close and stay closed, as by fails().
+  /// Share of the fresh devices (new to the search) that do not close and stay closed: see fails().
   double failing = Metrics::unset;
-  bool is_told = true;  ///< false if the measure of risk would be the same if all devices failed, see RobustCost::is_told()
+  bool is_told = true;  ///< false if the measure of risk says nothing about the waveform, see RobustCost::is_told()
   std::optional<FulfilledCondition> yield;  ///< condition of the yield, if the measure of risk is a yield
   std::vector<FulfilledCondition> conditions;
 };
 
 struct RobustResult {
-  OptimizeResult found;  ///< the best waveform; its costs are those on fresh devices (new to the search)
+  OptimizeResult found;  ///< best waveform; its costs are over the fresh devices (new to the search)
   /// Results of plain step and best waveform on the same fresh devices (new to the search); none if interrupted.
   std::optional<Robustness> verdict;
   RobustFindings findings;
@@ -67,10 +67,10 @@ struct RobustResult {
 /// `options.optimizer` is not used. Throws InvalidInput as optimize() does, and for a scene without [spread].
 [[nodiscard]] RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& robust);
 
-/// The parameters that a search will vary, and the height from which on a rebound is significant.
+/// The parameters that a search will vary, and the significance limit of its rebounds.
 struct SearchedParameters {
   FamilyColumns columns;
-  double significant_rebound = 0;  ///< least height of a significant rebound [m]
+  double significant_rebound = 0;  ///< height from which on a rebound is significant [m]
 };
 /// Returns the parameters of optimize(), or of robust_optimize() if `over_devices`. Throws the exceptions that optimize() or
 /// robust_optimize() would throw before the search.

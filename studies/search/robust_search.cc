@@ -21,35 +21,39 @@ namespace softland {
 namespace {
 
 constexpr std::uint64_t devices_of_choice = 512, least_of_verdict = 500;
-constexpr std::size_t most_of_race = 3;  // candidate waveforms taken from a tournament, by each measure
-// Permitted first contact, as a multiple of the plain step's 95th percentile; the second one if many devices are bounce-free.
+constexpr std::size_t most_of_race = 3;  // best waveforms taken from a tournament, by each measure
+// Latest permitted first contact, as a multiple of that under the plain step (95th percentiles). The second multiple is for
+// waveforms under which half the devices or more are bounce-free.
 constexpr double most_times = 5, most_times_of_landings = 7;
-constexpr double margin = 0.98;      // a chosen waveform's figures may be at most this share of those under the plain step
-constexpr double more_open = 0.005;  // permitted excess of the share of open devices over that under the plain step
+constexpr double margin = 0.98;      // upper limit of a chosen waveform's figures, as a share of those under the plain step
+constexpr double more_open = 0.005;  // how much larger the share of devices that stay open may be than under the plain step
 constexpr std::uint64_t which_searched = 0, which_chosen = 1;
 constexpr double least_of_race = 0.4,
-                 end_of_race = 0.75;  // bounds on the end of the searches, as shares of a time budget
-// `approaches`: waveform families that are searched if a drive has a stable path to the contact.
+                 end_of_race =
+                     0.75;  // bounds on the end of all searches, before the final evaluation, as shares of a time budget
+// `approaches`: waveform families added to the search if a drive can move the switch to its contact through stable equilibria.
 constexpr std::string_view quasi_static_short = "quasi-static:2", approaches = "+quasi-static+quasi-static:2";
 constexpr std::string_view usual_prefix = "usual_limit.";
-constexpr double alike = 1.05;  // candidate waveforms whose cost is at most this multiple of the least cost count as equal
-// Multiple of the least cost up to which a quicker waveform is preferred, if no drive has a stable path to the contact.
+constexpr double alike = 1.05;  // candidates with a cost of up to this multiple of the least count as equally good
+// The quickest candidate with a cost of up to this multiple of the least is chosen, if no drive can move the switch to its
+// contact through stable equilibria.
 constexpr double little_more = 1.25;
-constexpr std::uint64_t path_devices = 512;  // number of devices for computing the share with a stable path to the contact
-// Paces of the quasi-static approach: time until a steady contact, as a multiple of that under the plain step. The third pace
-// is 1, that of the plain step.
+constexpr std::uint64_t path_devices = 512;  // devices for the share that can close through stable equilibria
+// Paces of the quasi-static approach: permitted time until a steady contact, as a multiple of that under the plain step. A
+// third pace of 1 is searched, too.
 constexpr double fast = 0.49, slow = 1.96;
-constexpr double usual_closings_at_pace = 30'000;  // number of closings of a search at one pace; fewer for longer waveforms
+constexpr double usual_closings_at_pace = 30'000;  // closings of a search at one pace; fewer if waveforms are long
 
 bool closes(const DeviceOutcome& o) { return o.closed(); }
 
-// True for a condition that bounds a time of the closing from above.
+// True for a condition with an upper limit on a time, such as that of first contact.
 bool is_about_time(const Condition& one) {
   const bool is_upper = one.comparison == Comparison::below || one.comparison == Comparison::at_most;
   return is_upper && one.figure.unit == "s" && one.limit > 0;
 }
 
-// Returns the settings of the waveform families that can be searched within the scene's limits, and their names joined by +.
+// Returns the settings of the families to search, and the names of the families joined by +. Default families that the scene's
+// limits do not permit are left out.
 std::pair<std::vector<SearchSetting>, std::string> settings_of_race(const SceneFile& file, const OptimizeOptions& options,
                                                                     const RobustSearchOptions& devices,
                                                                     const Progress& progress) {
@@ -89,7 +93,7 @@ double quantile(const std::vector<DeviceOutcome>& outcomes, std::string_view key
 double quantile_95(const std::vector<DeviceOutcome>& outcomes, std::string_view key) { return quantile(outcomes, key, 0.95); }
 
 void share_budget(OptimizeOptions& options, RobustSearchOptions& devices) {
-  constexpr long share_of_drawing = 5;  // divisor of the whole budget for the search on the nominal device
+  constexpr long share_of_drawing = 5;  // the search on the nominal device gets a fifth of the budget
   const long all = options.max_evaluations;
   options.max_evaluations = std::max(1L, all / share_of_drawing);
   devices.closings = all - options.max_evaluations;
@@ -135,7 +139,8 @@ RobustSearch::RobustSearch(const SceneFile& file, const OptimizeOptions& options
   const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, families);
   settings_ = begins_gently(gentle, options.starts) ? gentle : std::move(settings);
   names_ = families_of(families);
-  // The waveform families of the tournament come first, then the quasi-static ones, which search_paces() searches.
+  // names_ and settings_ hold the waveform families of the tournament first, then the quasi-static ones, which search_paces()
+  // searches.
   while (raced_ < names_.size() && !is_quasi_static(names_[raced_])) ++raced_;
   if (raced_ < names_.size()) approach_ = settings_[raced_].space.quasi_static()->approach();
   if (!devices_.is_of_before) usual_room_ = within_usual_room(raced_settings(), options_.actuator, names_);
@@ -143,8 +148,8 @@ RobustSearch::RobustSearch(const SceneFile& file, const OptimizeOptions& options
   fit_budget();
 }
 
-// Sets the number of closings of the tournament and of fresh devices. If closings are slow, the tournament gets fewer, but
-// enough for a meaningful search. Fresh devices are reduced in proportion, but remain enough for 95th percentiles.
+// Sets the number of closings of the tournament, and of fresh devices for the final evaluation. If closings are slow, both are
+// reduced, but not below a tournament that is meaningful and the devices that 95th percentiles need.
 void RobustSearch::fit_budget() {
   race_length_ = devices_.closings;
   verdict_ = devices_.verdict;
@@ -162,7 +167,7 @@ void RobustSearch::fit_budget() {
 }
 
 SearchEstimate RobustSearch::estimate(SearchEstimate nominal) const {
-  // Work per fresh device in the final evaluation, in closings of a search.
+  // Work of the final evaluation per fresh device, in closings of a search.
   constexpr double rows = 20;
   const double one = device_share * (approach_ ? slow_approach : 1) * nominal.closing;
   const double searches = usual_room_.empty() || devices_.are_a_budget ? 1.5 : 2.25;
@@ -177,7 +182,7 @@ FamilyColumns RobustSearch::columns() const {
   std::string families;
   for (const std::string& name : names_) families += (families.empty() ? "" : "+") + name;
   FamilyColumns all = searched_columns(settings_, families);
-  // Append the waveform families within the default voltage limits.
+  // Append the parameters of the first tournament, which uses the default voltage limits; their names get a prefix.
   for (std::size_t k = 0; k < usual_room_.size(); ++k) {
     all.families.push_back(all.families[k]);
     for (std::string& name : all.families.back()) name.insert(0, usual_prefix);
@@ -226,8 +231,8 @@ std::vector<SearchSetting> RobustSearch::raced_settings() const {
   return {settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(raced_)};
 }
 
-// Runs a tournament within the default voltage limits first if the scene's limits are wider. The tournament within the scene's
-// limits then begins with the best waveform of the first one.
+// Runs the tournament of waveform families. If the scene's voltage limits are wider than the default ones, a first tournament
+// runs within the default limits, and the second one begins with its best waveform.
 void RobustSearch::race_all() {
   const std::vector<SearchSetting> raced = raced_settings();
   RaceOptions own = race_options();
@@ -246,7 +251,7 @@ void RobustSearch::race_all() {
 }
 
 std::vector<Pace> RobustSearch::paces_of_search() const {
-  // A quick pace (short permitted time until contact) uses the short input shaper, if both input shapers are searched.
+  // Use the waveform family with the short input shaper, if it is searched, for a pace with a short permitted time.
   const auto of = [this](double times) {
     constexpr double short_below = 0.75;
     const bool is_short = times < short_below && names_.back() == quasi_static_short;
@@ -260,7 +265,7 @@ std::vector<Pace> RobustSearch::paces_of_search() const {
   return {of(1), of(fast), of(slow)};
 }
 
-// Searches the quasi-static approach at each pace (permitted time until a steady contact).
+// Searches the quasi-static approach at each pace (permitted time until a steady contact), in parallel.
 void RobustSearch::search_paces() {
   if (raced_ == settings_.size()) return;
   share_with_path_ = softland::share_with_path(first().given, *approach_, path_devices, options_.seed, options_.jobs, progress_);
@@ -293,7 +298,7 @@ void RobustSearch::make_aims(const std::vector<DeviceOutcome>& step, const FreeT
   const double step_time = quantile_95(step, key_of(&Metrics::initial_contact_time));
   const std::span<const Figure> figures = device_figures;
   tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
-  // The time until contact costs nothing if a condition of the user bounds a time.
+  // If a condition of the user limits a time, the time until contact adds nothing else to the cost.
   free_ = free;
   tail_aim_.free = free;
   if (std::ranges::any_of(conditions_, is_about_time)) tail_aim_.free.until = std::numeric_limits<double>::infinity();
@@ -307,16 +312,17 @@ void RobustSearch::make_aims(const std::vector<DeviceOutcome>& step, const FreeT
   aims_.share.conditions.push_back(bound(most_times_of_landings));
 }
 
-// True if a condition of the user bounds the time of first contact, instead of the default bound.
+// True if a condition of the user limits the time of first contact; the search then adds no limit of its own.
 bool RobustSearch::says_when_to_close() const {
   return std::ranges::any_of(
       conditions_, [](const Condition& one) { return one.figure.member == Figure::Member(&Metrics::initial_contact_time); });
 }
 
-// Limits the time of the searches, so that the final evaluation fits into the time budget, but not below a share of the budget.
+// Limits the time of the searches so that the final evaluation, whose closings take `closing` [s] each, fits into the time
+// budget; the searches keep at least the share least_of_race.
 void RobustSearch::reserve_for_verdict(double closing, double reserved) {
   constexpr double rows =
-      20;  // Work per fresh device in closings of a search: three long closings, three calibrated rows, the Pareto front.
+      20;  // work per fresh device, in closings of a search: three long closings, three calibrated rows, the Pareto front
   const double verdict = rows * static_cast<double>(verdict_) * closing, all = options_.max_seconds;
   const double end = std::clamp(all - verdict, least_of_race * all, end_of_race * all) - reserved;
   before_verdict_.emplace(budget_, budget_.left(), end - budget_.elapsed());
@@ -352,7 +358,7 @@ ChosenFrom RobustSearch::candidate_of(const Contender& contender) const {
   return c;
 }
 
-// Adds the best candidate waveforms of a tournament by each measure to `pool`, the candidates among which the best is chosen.
+// Adds the best candidates of a tournament by each measure to `pool`, from which the best waveform is chosen later.
 void RobustSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool is_in_usual_room) const {
   for (const bool by_share : {false, true}) {
     std::ranges::stable_sort(raced.contenders, {}, [&](const Contender& r) { return by_share ? r.share : r.tail; });
@@ -365,7 +371,7 @@ void RobustSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool i
   }
 }
 
-// Evaluates the best candidate waveforms of all tournaments and paces on the devices on which the best waveform is chosen.
+// Evaluates the best candidate waveforms of all tournaments and paces on `others_`, devices that the searches have not used.
 void RobustSearch::choose() {
   progress_.tell("choosing on other devices", 0);
   std::vector<ChosenFrom> pool;
@@ -375,8 +381,8 @@ void RobustSearch::choose() {
   for (ChosenFrom& one : pool) place(std::move(one));
 }
 
-// Evaluates a candidate waveform of a running tournament on the devices on which the best waveform is chosen. Reports the
-// candidate if it is the best so far and fulfils the bounds of the choice.
+// Evaluates the best candidate waveform of a running search on `others_`, devices that the search has not used. Reports the
+// candidate if it is the best so far and no worse than the plain step.
 void RobustSearch::look(const Contender& contender) {
   if (budget_.given_up() || devices_.is_of_before || progress_.stopped()) return;
   std::vector<DeviceOutcome> outcomes = on_others(contender.waveforms);
@@ -424,10 +430,11 @@ std::vector<DeviceOutcome> RobustSearch::on_others(const DriveWaveforms& wavefor
   return others_->close_until(first().drives(waveforms), free_.until, options_.jobs);
 }
 
-// Rates a candidate waveform by its outcomes on the devices on which the best waveform is chosen.
+// Computes the figures and the rank of a candidate waveform from its outcomes on `others_`, devices that the searches have not
+// used.
 RobustSearch::Placed RobustSearch::judged(ChosenFrom one, const std::vector<DeviceOutcome>& outcomes) const {
   RobustAim aim = aims_.tail;
-  if (approach_) aim.conditions = conditions_;  // with a stable approach, the time of first contact has no bound
+  if (approach_) aim.conditions = conditions_;  // a slow approach may make contact late
   one.bounce_free = share_of(outcomes, is_bounce_free);
   one.tail = others_->value(outcomes, aim);
   one.measured = others_->measured(outcomes, aim);
@@ -448,8 +455,8 @@ bool RobustSearch::Placed::is_before(const Placed& other) const {
   return rank < other.rank;
 }
 
-// Moves the candidate waveform that touches first to the front, among candidates that cost at most little_more times the least.
-// It must not cost more than the best candidate within the default voltage limits.
+// Moves the candidate with the earliest first contact to the front, among candidates that cost at most little_more times the
+// least. It must not cost more than the candidate that this rule chooses from the tournament within the default voltage limits.
 void RobustSearch::prefer_sooner(std::vector<Placed>& sorted) {
   const auto soonest = [&](double most, bool in_usual_room) {
     double least = std::numeric_limits<double>::infinity();
@@ -472,12 +479,12 @@ void RobustSearch::prefer_sooner(std::vector<Placed>& sorted) {
 std::vector<ChosenFrom> RobustSearch::placed() const {
   std::vector<Placed> sorted = placed_;
   std::ranges::stable_sort(sorted, [](const Placed& a, const Placed& b) { return a.is_before(b); });
-  // Without a stable path to the contact the switch accelerates from the pull-in point on, so that slower waveforms are hardly
-  // softer.
+  // Prefer an earlier contact: without stable equilibria up to the contact, the switch accelerates from the pull-in point on,
+  // so that slower waveforms are hardly softer.
   if (!approach_ && free_.until > 0 && !sorted.empty() && sorted.front().candidate.is_good_enough && !sorted.front().lands_half)
     prefer_sooner(sorted);
-  // Costs are similar because of the few devices without a stable path: prefer the lowest 95th percentile of impact velocity
-  // among similar costs.
+  // The cost of slow approaches is mostly due to the few devices without stable equilibria up to the contact. Prefer the lowest
+  // 95th percentile of impact velocity among similar costs.
   if (approach_ && !sorted.empty() && sorted.front().candidate.is_good_enough) {
     auto softest = sorted.begin();
     for (auto one = sorted.begin(); one != sorted.end(); ++one) {
