@@ -17,16 +17,18 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t scouted_on = 16, ranked_on = 64;  // devices on which the nominal search's candidate waveforms are ranked
-constexpr std::size_t kept_of_scouted = 24;             // best candidate waveforms on `scouted_on` devices, by each measure
-constexpr std::size_t most_of_ranked = 2;               // best candidate waveforms on `ranked_on` devices, by each measure
-constexpr std::size_t most_judged = 3;                  // largest number of candidate waveforms tried on fresh devices
-constexpr double end_of_drawing = 0.3;                  // end of the search on the nominal device, as a share of a time budget
+// Numbers of devices on which the candidates of the nominal search are ranked.
+constexpr std::size_t scouted_on = 16, ranked_on = 64;
+constexpr std::size_t kept_of_scouted = 24;  // best candidates on `scouted_on` devices, by each measure
+constexpr std::size_t most_of_ranked = 2;    // best candidates on `ranked_on` devices, by each measure
+constexpr std::size_t most_judged = 3;       // most candidates that are tried on fresh devices
+constexpr double end_of_drawing = 0.3;       // end of the search on the nominal device, in a time budget
 
 constexpr const char *fast_row = "fast", *soft_row = "soft";
-// Largest time until a steady contact of the choices "fast", "default" and "soft", as a multiple of that under the plain step.
+// Largest time until a steady contact under the waveforms "fast", "default" and "soft" that are offered to the user, as a
+// multiple of that under the plain step.
 constexpr double fast_within = 0.5, usual_within = 1, soft_within = 2;
-constexpr double by_chance = 1.02;  // factor on the choices' times that allows for other random devices
+constexpr double by_chance = 1.02;  // tolerance of these limits, since fresh devices give other times
 constexpr double fewer_bounce_free = 0.05;
 
 class RobustSearchStudy {
@@ -49,7 +51,7 @@ class RobustSearchStudy {
     } catch (const Interrupted&) {  // the search was interrupted: return the results so far
     }
     searched_.give_up();
-    if (beside_.valid()) beside_.wait();  // wait for the search over devices, whose results are read from here on
+    if (beside_.valid()) beside_.wait();  // wait until the search over devices ends: its results are read below
     if (progress_.stopped() && result_->rows.empty()) take_leader();
     result_->interrupted = progress_.stopped();
     if (!result_->rows.empty()) complete_findings(*result_, searched_, options_.seed);
@@ -58,7 +60,7 @@ class RobustSearchStudy {
 
  private:
   [[nodiscard]] const SearchSetting& first() const { return searched_.first(); }
-  // Reports the progress of the study, except while the search on the nominal device runs, which makes its own reports.
+  // Reports the progress of the study, but not while the search on the nominal device runs, which reports itself.
   void tell(std::string_view what, double part) const {
     if (options_.on_preparation && !searches_drawing_) options_.on_preparation(what, part);
   }
@@ -75,14 +77,15 @@ class RobustSearchStudy {
     }
   }
 
-  // Options of the search on the nominal device: its candidate waveforms are stored for ranking on devices, and on_start gets
-  // the parameters of both searches.
+  // Returns the options of the search on the nominal device. It keeps candidate waveforms, which are then ranked on varied
+  // devices; its on_start also passes on the parameters of the search over devices.
   OptimizeOptions options_of_drawing() {
     OptimizeOptions own = options_;
     own.keep_tried = true;
     if (std::isfinite(own.max_seconds)) own.max_seconds = searched_.budget().seconds_left(end_of_drawing);
     own.max_seconds = std::max(own.max_seconds, 1e-3);
-    own.on_improvement = {};  // no best.toml of this search: that file gets the waveform for varied devices
+    // The search on the nominal device does not write best.toml: that file gets the waveform for varied devices.
+    own.on_improvement = {};
     own.on_estimate = [this](const SearchEstimate& of_drawing) {
       if (options_.on_estimate) options_.on_estimate(searched_.estimate(of_drawing));
     };
@@ -90,14 +93,14 @@ class RobustSearchStudy {
       FamilyColumns all = of_drawing;
       std::ranges::copy(searched_.columns().families, std::back_inserter(all.families));
       if (options_.on_start) options_.on_start(all);
-      drawing_options_.memory = options_.memory;  // the caller may create the memory of evaluations in on_start
+      drawing_options_.memory = options_.memory;  // on_start may have created the memory of evaluations
       search_beside(of_drawing.families.size());
     };
     return own;
   }
 
-  // Starts the search over devices, and returns when that search has evaluated a first waveform; then the search on the nominal
-  // device begins. `before` is the number of waveform families of the search on the nominal device.
+  // Starts the search over devices in parallel, and waits until it has evaluated a first candidate; only then the search on the
+  // nominal device begins. `before` is the number of waveform families of the latter.
   void search_beside(std::size_t before) {
     const bool is_beside = options_.jobs > 1, is_timed = std::isfinite(options_.max_seconds);
     const double of_drawing = is_timed ? end_of_drawing * options_.max_seconds : 0;
@@ -105,7 +108,8 @@ class RobustSearchStudy {
     const std::future<void> look = looked.get_future();
     beside_ = std::async(is_beside ? std::launch::async : std::launch::deferred,
                          [this, before, reserved = is_beside ? 0 : of_drawing, given = std::move(looked)]() mutable {
-                           std::promise<void> own = std::move(given);  // destroying `own` ends the wait
+                           // If no candidate was evaluated, the destructor of `own` ends look.wait().
+                           std::promise<void> own = std::move(given);
                            searched_.run(
                                before, [&own] { own.set_value(); }, reserved);
                          });
@@ -119,7 +123,7 @@ class RobustSearchStudy {
     searches_drawing_ = true;
   }
 
-  // Makes the best candidate waveform so far the result of a search that was interrupted before the final evaluation.
+  // Makes the best candidate so far the result of a search that was interrupted before the final evaluation.
   void take_leader() {
     const ChosenFrom* leader = searched_.leader();
     if (leader == nullptr) return;
@@ -148,7 +152,7 @@ class RobustSearchStudy {
     return first().space.searched(result_->drawing.best_scene->drives.waveforms());
   }
 
-  // Returns the waveforms of the search on the nominal device that are best on varied devices.
+  // Returns those candidates of the search on the nominal device that perform best on varied devices, with its result first.
   std::vector<ChosenFrom> ranked_again() {
     std::vector<ChosenFrom> all;
     for (TriedWaveform& one : result_->drawing.tried)
@@ -166,7 +170,7 @@ class RobustSearchStudy {
     return all;
   }
 
-  // Returns the best `kept` candidate waveforms on the first `devices` devices, by each measure of risk.
+  // Returns the candidates with the least cost on the first `devices` devices: the best `kept` by each measure of risk.
   std::vector<ChosenFrom> best_on(std::vector<ChosenFrom> all, std::size_t devices, std::size_t kept) {
     struct Ranked {
       double tail, share;
@@ -208,7 +212,7 @@ class RobustSearchStudy {
       if (one.name != default_choice) drives.push_back(named(one.name.c_str(), one.candidate));
     }
     if (undelayed_) drives.push_back(named(undelayed_row, *undelayed_));
-    drives.push_back(of_candidate(0));  // the last set of waveforms is the one that reports describe
+    drives.push_back(of_candidate(0));  // reports describe the last set of waveforms
     result_->verdict = robustness(result_->varied, drives, verdict_options(), progress_);
     result_->interrupted = result_->verdict.interrupted;
     add_row(plain_step_row, plain_step(first().given, options_.actuator));
@@ -223,8 +227,8 @@ class RobustSearchStudy {
     result_->findings.windows = hold_windows(first().given, verdict_options(), progress_);
   }
 
-  // Returns the candidate waveform with the softest impacts whose devices wait for a steady contact at most `times` as long as
-  // under the plain step; null if no candidate does.
+  // Returns the candidate with the softest impacts among those under which devices wait at most `times` as long for a steady
+  // contact as under the plain step; null if there is no such candidate.
   [[nodiscard]] const ChosenFrom* softest_within(double times, const std::vector<ChosenFrom>& candidates) const {
     const ChosenFrom* best = nullptr;
     for (const ChosenFrom& one : candidates) {
@@ -239,7 +243,8 @@ class RobustSearchStudy {
     return same_drives(given.commanded(first().drives(a.waveforms)), given.commanded(first().drives(b.waveforms)));
   }
 
-  // Makes the first candidate the default choice; adds a quicker and a softer choice if they differ from the default.
+  // Chooses the waveforms to offer: the first candidate as default, and a quicker and a softer one if they differ from the
+  // default.
   void make_choices() {
     const ChosenFrom& usual = result_->candidates.front();
     const double until = searched_.free().until, tau = usual.waited / until;
@@ -269,8 +274,7 @@ class RobustSearchStudy {
     return {.name = name, .waveforms = searched_.all_drives(one.waveforms), .calibration = searched_.known().calibration()};
   }
 
-  // Returns the scene with a simulated time that contains all waveforms of the choices completely, and the bounces under the
-  // plain step.
+  // Returns the scene with a simulated time in which all offered waveforms end, and the bounces under the plain step, too.
   [[nodiscard]] PreparedScene over_whole_window(PreparedScene given) const {
     double last = 0;
     const auto consider = [&](const ChosenFrom& one) {
@@ -317,7 +321,8 @@ class RobustSearchStudy {
   }
   [[nodiscard]] NamedDrive of_candidate(std::size_t n) const { return named(for_the_devices, result_->candidates[n]); }
 
-  // Adds a row of results for an evaluated waveform, which is found by its name or by equal drive signals.
+  // Adds a row to the table of results. The evaluated waveform is found in the final evaluation by its name, or by equal drive
+  // signals.
   void add_row(const char* name, const DriveWaveforms& waveforms) {
     const std::vector<DriveRobustness>& drives = result_->verdict.drives;
     auto found = std::ranges::find(drives, std::string_view(name), &DriveRobustness::name);
@@ -331,7 +336,8 @@ class RobustSearchStudy {
     if (found != drives.end()) result_->rows.push_back({.name = name, .knowledge = found->known.calibration(), .judged = *found});
   }
 
-  // Decides the result on fresh devices: the first candidate waveform not worse than the plain step, else the plain step.
+  // Decides the result by the fresh devices: the first candidate that is no worse than the plain step, otherwise the plain
+  // step.
   void decide() {
     const double significant = first().given.scene.metrics.significant_rebound;
     std::vector<DriveRobustness>& drives = result_->verdict.drives;
@@ -370,7 +376,8 @@ class RobustSearchStudy {
       findings().conditions.push_back(fulfilled(result_->row_of_devices().judged.outcomes, condition));
   }
 
-  // Replaces the best waveform by a quicker choice that is worse neither than the best waveform nor than the plain step.
+  // Replaces the best waveform by the offered quicker one, if that is worse neither than the best waveform nor than the plain
+  // step.
   void prefer_sooner(const DriveRobustness& step) {
     const double significant = first().given.scene.metrics.significant_rebound;
     const auto fast = std::ranges::find(result_->choices, std::string_view(fast_row), &DeviceChoice::name);
@@ -401,8 +408,8 @@ class RobustSearchStudy {
     }
   }
 
-  // Evaluates the offered waveforms on fresh devices; removes one that a quicker one equals in impact velocity, rebound and
-  // force.
+  // Completes the waveforms offered to the user with their performance on fresh devices. Leaves out a waveform if a quicker one
+  // is no worse in impact velocity, rebound and force.
   void decide_choices() {
     std::vector<DeviceChoice> all = std::exchange(result_->choices, {});
     if (result_->best.plain_step_wins) return;
@@ -433,7 +440,7 @@ class RobustSearchStudy {
     result_->choices = std::move(kept);
   }
 
-  // Returns the scene with the waveforms in volts, with the simulated time of the final evaluation.
+  // Returns the nominal scene with these waveforms in volts, over the simulated time of the final evaluation.
   [[nodiscard]] SceneFile scene_of(const DriveWaveforms& waveforms) const {
     SceneFile file = with_waveforms(result_->drawing.baseline_scene, waveforms);
     if (result_->varied.duration > first().given.duration)
@@ -441,7 +448,7 @@ class RobustSearchStudy {
     return file;
   }
 
-  // Makes the waveforms the result of the search: simulates and confirms the closing of the nominal device.
+  // Makes these waveforms the result of the search, with a confirmed simulation of the closing of the nominal device.
   void win(const DriveWaveforms& waveforms) {
     OptimizeResult& best = result_->best;
     const OptimizeResult& drawing = result_->drawing;
@@ -468,10 +475,13 @@ class RobustSearchStudy {
   std::atomic<bool> searches_drawing_ = false;
   RobustSearch searched_;
   OptimizeOptions drawing_options_;
-  std::optional<RobustSearchResult> result_;  // result of the whole search; none before the search on the nominal device
-  // Best candidate waveform whose electrode steps at t = 0; none unless the step of other candidates may come later.
+  // Result of the whole search; empty until the search on the nominal device has ended.
+  std::optional<RobustSearchResult> result_;
+  // The best candidate with the electrode's plain step at t = 0, as an extra row of results, if the result may have a later
+  // step.
   std::optional<ChosenFrom> undelayed_;
-  std::future<void> beside_;  // search over devices in another thread; last member, so that the members it uses outlive it
+  // Search over devices in another thread; the last member, since it uses the others until it is destroyed.
+  std::future<void> beside_;
 };
 
 }  // namespace

@@ -49,36 +49,39 @@ struct DeviceChoice {
   /// 95th percentile of the time until a steady contact, as a multiple of that under the plain step.
   double tau = Metrics::unset;
   DriveRobustness judged = {};
-  std::optional<SceneFile> scene = {};  ///< scene with the waveform of the choice, for "fast" and "soft"
+  std::optional<SceneFile> scene = {};  ///< scene with the waveform; set for "fast" and "soft"
 };
 
 struct RobustSearchResult {
-  PreparedScene varied;  ///< the scene with the process variation that is used, over the simulated time of the final evaluation
+  /// Scene with the process variation that was used, and with the simulated time of the final evaluation.
+  PreparedScene varied;
   OptimizeResult drawing;
-  /// The best waveform on the nominal device: the plain step if all other candidates are worse over the devices. Without
-  /// best_scene if the search was interrupted before the choice.
+  /// The best waveform for the devices, as simulated on the nominal device: the plain step if all other candidates are worse.
+  /// best_scene is empty if the search was interrupted before the choice.
   OptimizeResult best;
-  std::optional<ChosenFrom> chosen = {};    ///< candidate waveform that became the result; none if the plain step is best
-  std::vector<ChosenFrom> candidates = {};  ///< candidates for the best waveform, the best first
-  /// Waveforms offered to the user, that with the earliest steady contact first; none if the plain step is best.
+  std::optional<ChosenFrom> chosen = {};    ///< candidate that became the result; empty if the plain step is best
+  std::vector<ChosenFrom> candidates = {};  ///< candidates among which the result was chosen, the best first
+  /// Waveforms offered to the user, that with the earliest steady contact first; empty if the plain step is best.
   std::vector<DeviceChoice> choices = {};
-  FreeTime free = {};  ///< the time until contact that costs nothing in the search
-  std::optional<StableApproach> approach =
-      {};  ///< stable path by which a drive can move the switch to its contact; none if no drive can
-  /// Results under plain step, nominal design's waveform and best waveform on the fresh devices (new to the search).
+  FreeTime free = {};  ///< part of the time until contact that added nothing to the cost in the search
+  /// Slow approach by which a drive can move the switch to its contact through stable equilibria; empty if no drive can.
+  std::optional<StableApproach> approach = {};
+  /// Results on the fresh devices (new to the search) under the plain step, the nominal design's waveform and the best
+  /// waveform.
   Robustness verdict = {};
   std::vector<DevicesRow> rows = {};
   /// Scene with the waveform for calibrated devices and the [calibration] that it needs.
   std::optional<SceneFile> calibrated = {};
-  double pull_in = Metrics::unset;       ///< dynamic pull-in voltage of the nominal device [V]; set if devices are calibrated
-  double closing_time = Metrics::unset;  ///< closing time of the nominal device under the step whose closing time is
-                                         ///< measured [s]
-  DevicesFindings findings = {};         ///< findings for reports; without rows if interrupted before the final evaluation
+  double pull_in = Metrics::unset;  ///< dynamic pull-in voltage of the nominal device [V]; set if devices are calibrated
+  /// Closing time of the nominal device under the slow step by which devices are calibrated [s].
+  double closing_time = Metrics::unset;
+  /// Findings for reports; without rows if the search was interrupted before the final evaluation.
+  DevicesFindings findings = {};
   bool interrupted = false;
 
-  /// Returns the row of results for the best waveform over the devices; call it only after the final evaluation.
+  /// Returns the row for the best waveform in the table of results; call it only after the final evaluation.
   [[nodiscard]] DevicesRow& row_of_devices();
-  /// True if 95 % of the devices have no significant rebound under the plain step.
+  /// True if the 95th percentile of the rebound height under the plain step, over the fresh devices, is not significant.
   [[nodiscard]] bool plain_step_lands() const;
 };
 

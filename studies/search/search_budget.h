@@ -36,26 +36,27 @@ class SearchBudget {
   /// Constructs a part of the budget `whole` with its own time `seconds` from now on [s].
   SearchBudget(SearchBudget& whole, long evaluations, double seconds);
 
-  /// Adds to the evaluations spent, of this budget and of the budget of which it is a part.
+  /// Adds to the evaluations spent, of this budget and of the whole budget of which it is a part.
   void took(long evaluations);
   [[nodiscard]] long taken() const { return taken_; }
   /// Returns the number of evaluations that are left; negative if the last candidate waveform used more than were left.
   [[nodiscard]] long left() const { return evaluations_ - taken_; }
   /// Returns the share of the evaluations that is spent, 0 to 1.
   [[nodiscard]] double share_taken() const;
-  /// Changes the number of evaluations that the budget has.
+  /// Sets the number of evaluations of the whole budget, those already spent included.
   void allow(long evaluations) { evaluations_ = evaluations; }
 
   /// Returns the time of the budget [s]; infinite without a limit.
   [[nodiscard]] double seconds() const { return seconds_; }
   /// Returns the time since the construction of the budget [s].
   [[nodiscard]] double elapsed() const { return clock_() - begin_; }
-  /// Returns the time until `share` of the budget's time has passed [s]; infinite without a limit, negative after that time.
+  /// Returns the time left until the given share of the budget's time has passed [s]; infinite without a limit, negative after
+  /// that time.
   [[nodiscard]] double seconds_left(double share = 1) const { return share * seconds_ - elapsed(); }
   /// Calls work(), whose time does not count for the budget.
   void leave_out(const std::function<void()>& work);
 
-  /// Ends the search with this budget and its parts; may be called from any thread.
+  /// Ends the search by this budget and by its parts early; may be called from any thread.
   void give_up() { given_up_ = true; }
   [[nodiscard]] bool given_up() const { return given_up_ || (whole_ != nullptr && whole_->given_up()); }
   /// True if another thread has set the flag that ends the search (Ctrl-C).

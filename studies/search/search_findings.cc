@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t most_of_front = 6;
 constexpr std::size_t drawn_devices = 50, instants_of_course = 240;
-constexpr double units_of_gap = 5000;  // resolution of the stored contact gaps over time, in units per contact gap at rest
-// End of the stored contact gaps over time, as a multiple of the time until steady contact.
+constexpr double units_of_gap = 5000;  // stored contact gaps are whole multiples of the gap at rest over this number
+// The stored contact gaps end at this multiple of the time until the contact force is steady.
 constexpr double after_steady = 1.1;
 
 DevicesFindings::Row told(const DevicesRow& row) {
@@ -49,7 +49,7 @@ DevicesFindings::Row told(const DevicesRow& row) {
 
 }  // namespace
 
-// Computes the contact gaps of devices over time, under the plain step and the best waveform, until the contact force is
+// Computes the contact gaps of some devices over time, under the plain step and the best waveform, until the contact force is
 // steady.
 void draw_courses(RobustSearchResult& result, const RobustnessOptions& judging, const Progress& progress) {
   if (result.best.plain_step_wins) return;
@@ -95,7 +95,7 @@ void judge_front(RobustSearchResult& result, RobustSearch& search, const Progres
   std::ranges::stable_sort(result.findings.front, {}, &FrontPoint::first_touch);
 }
 
-// Adds the findings of the search that were not stored earlier.
+// Copies the results of the search to the findings, except those that were added during the final evaluation.
 void complete_findings(RobustSearchResult& result, RobustSearch& search, std::uint64_t seed) {
   DevicesFindings& d = result.findings;
   const std::optional<Closing>& drawn = result.drawing.best;

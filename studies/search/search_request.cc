@@ -22,7 +22,7 @@
 namespace softland {
 namespace {
 
-// Returns the result of parse(); adds the name of the request's field to the message of an exception.
+// Returns the result of parse(). An InvalidInput of parse() becomes an InvalidRequest that names the field of the request.
 template <class Parse>
 auto read(const std::string& field, const Parse& parse) {
   try {
@@ -50,15 +50,15 @@ std::vector<Condition> conditions_of(const SearchRequest& request, std::span<con
   return all;
 }
 
-// Parses the conditions of a request. A condition on a figure of both searches applies to the search on the nominal design and
-// to that on devices.
+// Parses the conditions of a request: to `devices` for the search over devices, and those on figures that a single device has
+// also to `drawing`, for the search on the nominal device.
 void read_shared_conditions(const SearchRequest& request, std::vector<Condition>& drawing, std::vector<Condition>& devices) {
   devices = conditions_of(request, device_figures);
   for (const std::string& text : request.constrain) {
     try {
       drawing.push_back(parse_condition(text, conditioned_figures));
     } catch (const InvalidInput&) {
-      continue;  // skip a figure that only the search over devices has
+      continue;  // the figure exists only in a search over devices
     }
   }
 }
@@ -107,15 +107,15 @@ OptimizeOptions options_of(const SearchRequest& request, const SceneFile& scene,
   options.counts_work = !request.budget;
   if (request.robust == nominal_alone) options.conditions = conditions_of(request, conditioned_figures);
   if (request.budget) read_budget(*request.budget, options);
-  // Begin with half the budget only for "auto" on the nominal device with one seed: the stored request (plan) then contains the
-  // budget.
+  // A divided budget compares results by budget. It needs a number of evaluations that the user gave, and is meant for one
+  // search on the nominal device by "auto".
   const bool has_one_seed = !request.seeds || *request.seeds == "1";
   options.begins_with_half = request.robust == nominal_alone && request.budget && has_one_seed && request.optimizer == "auto";
   return options;
 }
 
-// Returns the waveform families of the search on the nominal device: without quasi-static ones, which only a search over
-// devices uses.
+// Returns the waveform families of the search on the nominal device: `text` without quasi-static families, which only a search
+// over devices can use; default families if none is left.
 std::string families_of_drawing(const std::string& text, const SceneFile& scene, Actuator actuator) {
   std::string kept;
   for (const std::string& family : families_of(text)) {
@@ -188,8 +188,8 @@ std::uint64_t seed_count(const SearchRequest& request, const OptimizeOptions& op
   return count;
 }
 
-// Returns the default waveform families. Varied devices need a slow and flexible family, or, with a per-device calibration, a
-// quick family that presses the switch on its contact.
+// Returns the default waveform families. Under one measure of risk, varied devices need a slow and flexible family, or, with a
+// per-device calibration, a quick family that presses the switch on its contact.
 std::string usual_families(const SearchRequest& request, const SceneFile& scene) {
   if (request.is_by_measure())
     return std::string(request.calibrate.empty() || request.calibrate == "none" ? default_robust_family
@@ -211,7 +211,7 @@ SearchRequest or_else(SearchRequest request, const SearchRequest& other) {
 
 namespace {
 
-// Returns the default actuator: all drives whose waveforms can be varied.
+// Returns the default actuator: electrodes that pull, and the piezo, as far as their waveforms can be varied.
 Actuator usual_actuator(const SceneFile& scene) {
   const bool has_piezo = scene.written("piezo") && scene.written("driver.piezo");
   if (!has_piezo) return Actuator::electrostatic;

@@ -16,11 +16,12 @@
 
 namespace softland {
 
-/// Values of SearchRequest::robust other than a measure of risk: search over devices by a tournament, beside the nominal
-/// design; or search for the nominal design alone.
+/// Values of SearchRequest::robust that are not a measure of risk: a tournament over devices, with a search on the nominal
+/// device in parallel; or a search on the nominal device alone.
 inline constexpr std::string_view by_race = "auto", nominal_alone = "none";
 
-/// Values of SearchRequest::hold_step: the instant of the electrode's plain step is searched (actuator pzt), or is t = 0.
+/// Values of SearchRequest::hold_step, with the piezo as actuator: the search chooses the instant of the electrode's plain
+/// step, or the step is at t = 0.
 inline constexpr std::string_view step_is_chosen = "chosen", step_is_fixed = "fixed";
 
 /// The request of a search. A member that is empty was not given: completed() fills it in.
@@ -60,7 +61,7 @@ void visit_prose(const Visit& visit, Requests&... requests) {
   visit("seeds", requests.seeds...);
 }
 
-/// Returns `request`, whose empty members get the values of `other`.
+/// Returns `request`; each empty member gets its value from `other`.
 [[nodiscard]] SearchRequest or_else(SearchRequest request, const SearchRequest& other);
 
 /// Returns `request` with defaults, which depend on the scene and on the other members, for all empty members except the

@@ -19,21 +19,21 @@
 namespace softland {
 namespace {
 
-constexpr double latest_touch = 2.5;  // latest permitted time of first contact, as a multiple of the baseline's
-// A first contact up to these multiples of the time under the plain step costs little: an electrode can close softly in about
-// the time of the step, a piezo only slows the beam.
+constexpr double latest_touch = 2.5;  // latest permitted time of first contact, as a multiple of the plain step's
+// First contact is penalised less up to these multiples of its time under the plain step: an electrode can close softly in
+// about the time of the step, a piezo only slows the beam.
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;  // relative tolerance of the integrator in a search, which gives costs to about 1e-4
-constexpr double most_broken = 10;         // largest relative violation of a condition that counts in the cost
-// Weight of the impact velocity in the cost of a search over several numbers of modes. The impact velocity hardly counts in the
-// cost of bounce, but changes most with further modes.
+constexpr double most_broken = 10;         // largest counted violation of a condition, relative to its limit
+// Weight of the impact velocity in a cost over several numbers of modes. It hardly counts in the cost of bounce alone, but is
+// what further modes change most.
 constexpr double weight_of_speed = 0.04;
-// Cost of bounce from which on a candidate waveform is not simulated with more modes; plain step: about 1.
+// Cost of bounce from which on a candidate is too bad to be simulated with more modes; the plain step costs about 1.
 constexpr double hopeless = 0.25;
 constexpr double golden_ratio = 1.618033988749895;
 
-// Returns estimated figures of the baseline for a plain step that does not close: an overshooting initial pulse may still close
-// the switch.
+// Returns estimated figures as the baseline if the plain step does not close the switch; an overshooting initial pulse may
+// still close it.
 Metrics imagined_step(const PreparedScene& given, double period) {
   const double gap = given.scene.device.contact_gap();
   Metrics step;
@@ -44,14 +44,14 @@ Metrics imagined_step(const PreparedScene& given, double period) {
   return step;
 }
 
-// Returns the excess g of a figure over the limit of a condition, for a constrained optimizer. The included margin keeps the
-// condition fulfilled at the end of the search, where g = 0.
+// Returns the relative excess g of a figure over the limit of a condition, for an optimizer with constraints g <= 0. A small
+// margin is added, so that the condition is fulfilled where the optimizer ends at g = 0.
 double excess(const Condition& one, const Metrics& metrics) {
   constexpr double margin = 1e-6;
   return std::clamp(one.violation(one.figure.value(metrics)) + margin, -most_broken, most_broken);
 }
 
-// Returns the derivative of excess() by the figure of the condition.
+// Returns the derivative of excess() by the condition's figure.
 double excess_rate(const Condition& one, const Metrics& metrics) {
   if (std::abs(excess(one, metrics)) >= most_broken) return 0;
   const double scale = one.limit == 0 ? 1 : std::abs(one.limit);
@@ -109,7 +109,7 @@ PreparedScene prepared_with(const PreparedScene& prepared, DriveWaveforms wavefo
 PreparedScene read_back(const SceneFile& file, const std::string& name, const PreparedScene& given) {
   PreparedScene p = choose(prepare(file.again(name)));
   p.scene.warnings = given.scene.warnings;
-  // Keep the levels of the scene: in volts the scene file would give hold levels for all drives.
+  // Keep the other drives' voltages for computing pull-in voltages: from a text in volts they would all be hold levels.
   p.scene.standing = given.scene.standing;
   return p;
 }
@@ -184,7 +184,7 @@ SearchCosts SearchSetting::worst_price(const RecordedClosing& closing) const {
 }
 
 Metrics SearchSetting::with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const {
-  metrics.hold_force = baseline.metrics.hold_force;  // contact force under the hold levels, which a search never changes
+  metrics.hold_force = baseline.metrics.hold_force;  // rest under the hold levels, which a search never changes
   metrics.capacitance = baseline.metrics.capacitance;
   metrics.resistance = baseline.metrics.resistance;
   set_drive_figures(metrics, given, signals);
@@ -208,8 +208,8 @@ SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
   for (const Condition& one : followed_conditions()) costs.apart->excess.push_back(excess(one, figures));
   const double violation = broken(conditions, figures);
   if (!(violation > 0)) return costs;
-  // The penalty for violated conditions is less than the cost difference between closing and not touching. The separate cost of
-  // a target gets 1 more, so that it exceeds every cost of closings that fulfil the conditions.
+  // The penalty of violated conditions is below 3, less than the cost of not reaching the contact. For a target with a separate
+  // cost, 1 is added, so that every violation costs more than any closing that fulfils the conditions.
   const double penalty = 3 * violation / (1 + violation);
   costs.guide += penalty;
   costs.target += target.has_own_cost() ? 1 + penalty : penalty;
@@ -226,7 +226,7 @@ SearchCosts SearchSetting::cost_at(std::span<const double> x, EvaluationMemory* 
   auto closing = std::make_shared<const RecordedClosing>(*this, given.applied(std::move(*commanded)));
   SearchCosts found = worst_price(*closing);
   if (last != nullptr) *last = {.x = key.x, .closing = std::move(closing)};
-  found.guide += 0.0, found.target += 0.0;  // turn -0 into 0, since a memory need not preserve the sign
+  found.guide += 0.0, found.target += 0.0;  // turn -0 into 0, since a stored cost may lose the sign
   if (memory != nullptr) memory->note(key, {.cost = found.target, .guide = found.guide, .lands = found.lands});
   return found;
 }
@@ -264,7 +264,7 @@ SignalSlopes SearchSetting::signal_slopes(std::span<const double> x, const std::
 }
 
 std::vector<ParameterGroup> SearchSetting::parameter_groups() const {
-  std::vector<double> inside;  // a generic point of the search space: no two parameters at the same share of their range
+  std::vector<double> inside;  // a point at which no two parameters are at the same share of their range
   for (const Variable& v : space.variables())
     inside.push_back(std::lerp(v.lower, v.upper, 0.3 + 0.4 * std::fmod(golden_ratio * static_cast<double>(inside.size()), 1.0)));
   return signal_slopes(inside).groups();
@@ -381,7 +381,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   scale.step = step.touched() && step.is_complete() ? step : imagined_step(given, period);
   const Aim aim = step.touched() && step.is_complete() ? target.in_units_of(step) : target;
   const double baseline_cost = cost(aim, step, scale, given.scene.metrics);
-  // Contact must be early enough for a bounce within the simulated time: a later closing would look soft.
+  // Contact must be early enough for a bounce within the simulated time; otherwise a late closing would look bounce-free.
   run.no_contact_before =
       std::min(latest_touch * scale.step.initial_contact_time, given.duration - 2 * given.model.basis().in_contact_period());
   require(run.no_contact_before > 0, [&] {

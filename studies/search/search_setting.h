@@ -25,11 +25,11 @@
 
 namespace softland {
 
-/// Cost from which on a waveform does not bring the switch to its contact: see cost().
+/// A waveform with this cost or more does not bring the switch to its contact: see cost().
 inline constexpr double never_touched = 10;
 
 struct RecordedClosing;
-/// The point of the search space whose cost was computed last, and its simulated closing, which the gradient reuses.
+/// The point of the search space whose cost was computed last, with its simulated closing: the gradient needs the same closing.
 struct LastClosing {
   std::vector<double> x = {};
   std::shared_ptr<const RecordedClosing> closing = {};
@@ -38,7 +38,7 @@ struct LastClosing {
 /// The switch of the scene, modelled with more modes.
 struct RicherBeam {
   Switch model;
-  /// Potential energy of the richer model in its closed state [J], see ClosingOptions.
+  /// Potential energy of this model in its closed state [J], see ClosingOptions::closed_potential.
   double closed_potential = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -52,7 +52,8 @@ struct SearchSetting {
   double baseline_cost = 0;
   ClosingOptions run;  ///< options for simulating the closing of a candidate waveform
   SearchSpace space;
-  std::size_t family = 0;  ///< number of the waveform family among those that share a memory of evaluations
+  /// Number of the waveform family, by which a memory of evaluations distinguishes the families of a search.
+  std::size_t family = 0;
   /// Limits of the searched waveforms by drive: those of the voltage sources, or slower voltage edges.
   std::map<std::string, DriverLimits> limits;
   /// Models of the switch with more modes. If there are any, the cost of a candidate waveform is the worst over its closings
@@ -82,11 +83,12 @@ struct SearchSetting {
                                     LastClosing* last = nullptr) const;
   /// Returns the gradient of the cost of `aim` by the waveform parameters, at a point on the nominal device, then the gradients
   /// of followed_conditions(), as in Conditions::gradients. Exact except at grazing contacts; NaN where no gradient exists.
-  /// `groups` and `last`, the closing at this point, only save time.
+  /// `groups` (of parameter_groups()) and `last` (the closing at this point, if known) only save time.
   [[nodiscard]] std::vector<double> gradient_at(std::span<const double> x, const Aim& aim,
                                                 const std::vector<ParameterGroup>& groups = {},
                                                 const LastClosing* last = nullptr) const;
-  /// Returns the waveform parameters, grouped by the pieces of the drive signals that a parameter changes.
+  /// Returns groups of waveform parameters that change different pieces of the drive signals, and can be differentiated
+  /// together.
   [[nodiscard]] std::vector<ParameterGroup> parameter_groups() const;
   /// Returns the derivatives of the signals of all drives by the waveform parameters.
   [[nodiscard]] SignalSlopes signal_slopes(std::span<const double> x, const std::vector<ParameterGroup>& groups = {}) const;
@@ -103,14 +105,14 @@ struct SearchSetting {
   [[nodiscard]] PreparedScene within_limits() const;
 
  private:
-  /// Returns the figures with those added that the simulation of a candidate waveform does not compute: of rest and of drives.
+  /// Adds figures that the simulation of a candidate does not compute: of the closed switch at rest, and of the drive signals.
   [[nodiscard]] Metrics with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const;
   [[nodiscard]] SearchCosts price_of(const RecordedClosing& closing) const;
   [[nodiscard]] bool keeps_limits(const std::string& drive, const Waveform& waveform, const Signal& commanded) const;
   [[nodiscard]] SearchCosts worst_price(const RecordedClosing& closing) const;
 };
 
-/// Throws InvalidInput if the scene does not request the figure of a condition.
+/// Throws InvalidInput if the scene does not request the computation of the condition's figure.
 void require_asked(const Condition& condition, const AskedFigures& asked);
 
 /// Prepares a scene for a search in one waveform family. Throws InvalidInput for a scene or a waveform family that cannot be

@@ -67,8 +67,8 @@ class FamilyOfDrives {
   std::map<std::string, std::string> named_;
 };
 
-// Minimises the sum of squares of the residuals that `apart` computes, from the start `x` and within the bounds of the
-// variables, by Gauss-Newton steps with the damping of Marquardt (1963).
+// Minimises the sum of squares of apart(x), the vector of residuals at x, within the bounds of the variables. Source of the
+// damped Gauss-Newton steps: Marquardt (1963).
 template <class Apart>
 std::vector<double> fitted(std::vector<double> x, const std::vector<Variable>& variables, const Apart& apart) {
   constexpr int most_steps = 40;
@@ -183,7 +183,7 @@ namespace {
 
 constexpr int instants = 250;  // number of instants at which two waveforms are compared
 
-// Returns samples of a drive signal until `end` [s]: the square of an electrode's voltage with its sign, or the piezo's
+// Returns samples of a drive signal until `end` [s]: of the square of an electrode's voltage, with its sign, or of a piezo's
 // voltage.
 VectorXd course_of(const DriveSearch& drive, const Signal& signal, double end) {
   VectorXd all(instants);
@@ -195,13 +195,14 @@ VectorXd course_of(const DriveSearch& drive, const Signal& signal, double end) {
 }
 
 double end_of_course(const DriveSearch& drive, const Signal& given) {
-  // End of the comparison of waveforms: multiples of the last breakpoint, and of the time of first contact.
+  // Two waveforms are compared until the larger of these multiples: of the last breakpoint, and of the plain step's first
+  // contact.
   constexpr double beyond = 1.25, least = 2.5;
   return std::max(beyond * given.breakpoints().back(), least * drive.first_touch);
 }
 
-// Returns the point of a waveform family at which the samples `course` differ least from `wanted`. `about_hold` is the mean
-// square of `wanted` about its hold level.
+// Returns the point of a waveform family whose samples course(x) differ least from the samples `wanted` of the given waveform.
+// `about_hold` is the mean square of `wanted` about its hold level, the unit of a large difference.
 template <class Course>
 std::vector<double> nearest_point(const std::vector<Variable>& variables, const std::vector<std::vector<double>>& starts,
                                   const Course& course, const VectorXd& wanted, double about_hold) {
@@ -217,7 +218,8 @@ std::vector<double> nearest_point(const std::vector<Variable>& variables, const 
     if (left < fewest) fewest = left, best = std::move(fit);
   };
   for (const std::vector<double>& start : starts) fit_from(start);
-  // Search without derivatives for waveform families of steps, whose samples have no derivatives by times.
+  // Search without derivatives if the difference is still large: samples of steps have no derivatives by the times of the
+  // steps.
   if (fewest > near_enough * about_hold) {
     Problem problem;
     problem.variables = variables;
@@ -391,7 +393,7 @@ DriveWaveforms SearchSpace::waveforms(std::span<const double> x) const {
 }
 
 std::optional<std::vector<double>> SearchSpace::parameters(const DriveWaveforms& waveforms) const {
-  // Waveforms of the quasi-static family are tables, from which the parameters cannot be recovered.
+  // The waveforms of the quasi-static family are tables of voltage over time, from which its parameters cannot be found.
   if (joint_) return std::nullopt;
   std::vector<double> all;
   for (const DriveSearch& d : drives_) {
@@ -413,7 +415,8 @@ std::vector<double> SearchSpace::nearest(const DriveWaveforms& waveforms) const 
   return all;
 }
 
-// Finds the nearest point for all drives together: each drive's samples (course_of()) are divided by their largest value.
+// Search the point at which the waveforms of all drives together differ least from the given ones. The samples of each drive
+// (course_of()) are divided by their largest value.
 std::vector<double> SearchSpace::nearest_of_all(const DriveWaveforms& given) const {
   std::vector<double> scales;
   double end = 0, hold = 0;

@@ -47,8 +47,8 @@ namespace softland {
 
 /// The drives whose waveforms are searched; the defaults of a search depend on this value.
 enum class Shaped { electrode, piezo, several };
-/// Returns `several` for an electrode and a piezo, and if the scene has a voltage source [driver] for an electrode on the far
-/// side (away from the contact).
+/// Returns `several` for an electrode with a piezo, and for two electrodes, if the scene has a voltage source [driver] for an
+/// electrode on the far side (away from the contact).
 [[nodiscard]] Shaped shaped_drives(const SceneFile& scene, Actuator actuator);
 /// Returns the default waveform families, which together find a bounce-free waveform for every switch of results/comparison.md.
 [[nodiscard]] std::string_view default_families(Shaped drives);
@@ -72,7 +72,8 @@ struct DriveSearch {
   const SearchedFamily* family = nullptr;  ///< waveform family of the drive; null: `own` is used
   /// Waveform from the user's code that is searched instead of a waveform family.
   std::shared_ptr<const OwnWaveform> own = nullptr;
-  std::size_t count = 0;   ///< number of levels, knots (corners), pulses or sines, if the waveform family has such a number
+  /// The number N of a family such as "knots:N": of levels, knots (corners), pulses or sines; 0 for other families.
+  std::size_t count = 0;
   double hold = 0;         ///< hold level of the drive [V]
   double before = 0;       ///< voltage of the drive before t = 0 [V]
   bool brakes = false;     ///< true for an electrode on the far side (away from the contact), which brakes the beam
@@ -116,8 +117,8 @@ class SearchSpace {
   /// Returns the point of the search space that has the given waveforms, if this point exists: the start for refining an
   /// earlier result.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const DriveWaveforms& waveforms) const;
-  /// Returns the point of the search space whose waveforms differ least from the given ones, for which misfit() must be empty:
-  /// a start in another family.
+  /// Returns the point of the search space whose waveforms differ least from the given ones, which may be of another family.
+  /// misfit() of the given waveforms must be empty.
   [[nodiscard]] std::vector<double> nearest(const DriveWaveforms& waveforms) const;
   /// Returns the reason why a search cannot begin with the given waveforms, as text; empty if it can.
   [[nodiscard]] std::string misfit(const DriveWaveforms& waveforms) const;

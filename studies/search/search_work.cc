@@ -11,8 +11,7 @@ namespace {
 
 class NoObserver final : public ClosingObserver {};
 
-// Returns the waveforms at the first starting point of the search. Returns none for waveforms from the user's code, which may
-// throw exceptions.
+// Returns the waveforms at the first starting point; none for waveforms from the user's code, which may throw exceptions.
 DriveWaveforms first_waveforms(const SearchSetting& setting) {
   const bool has_own = std::ranges::any_of(setting.space.drives(), [](const DriveSearch& drive) { return bool(drive.own); });
   return has_own ? DriveWaveforms() : setting.space.waveforms(setting.space.starts().front());
@@ -21,7 +20,7 @@ DriveWaveforms first_waveforms(const SearchSetting& setting) {
 }  // namespace
 
 ClosingWork closing_work(const SearchSetting& setting) {
-  // Work of a right-hand side beside its quadrature points, and number of points that count as 1.
+  // Work of a right-hand side without its quadrature points, and work that counts as 1, in units of one quadrature point.
   constexpr double points_beside = 8, usual_points = 32;
   const Switch& model = setting.given.model;
   const double points = points_beside + static_cast<double>(model.quadrature().points());
@@ -46,7 +45,7 @@ long within_work(long closings, double counted, double usual) {
 
 void fit_nominal_budget(const SearchSetting& setting, OptimizeOptions& options) {
   if (!options.counts_work && !options.on_estimate) return;
-  constexpr double by_evaluation = 1.5;  // work per evaluation of a search in closings, with gradients and verification
+  constexpr double by_evaluation = 1.5;  // closings per evaluation: gradients and verification take another half
   const ClosingWork one = closing_work(setting);
   const long asked = options.max_evaluations;
   if (options.counts_work) {

@@ -25,13 +25,13 @@ struct ClosingWork {
 /// of a search, and returns the work of the slower one. Throws no exception: a simulation that fails counts up to its failure.
 [[nodiscard]] ClosingWork closing_work(const SearchSetting& setting);
 
-/// Returns the reference work u of a closing, in right-hand sides; shipped scenes with quick closings need less work.
+/// Returns the reference u for the work of a closing, in right-hand sides: a default budget is reduced if closings take more.
 [[nodiscard]] double usual_work(Shaped drives);
 /// Number of devices that SIMD lanes simulate in the time of one.
 inline constexpr double usual_lanes = 8;
 
-/// Computing time of a closing in a search over devices, relative to a single closing (measured: 0.6 to 1.3), and of a
-/// quasi-static approach, relative to another closing.
+/// Computing time of a closing in a search over devices, relative to that of a single closing (measured: 0.6 to 1.3). Computing
+/// time of a quasi-static closing relative to a quick one.
 inline constexpr double device_share = 0.8, slow_approach = 3;
 
 /// Returns the number of closings n of a budget of `closings` when a closing has the work `counted`; at least 1.

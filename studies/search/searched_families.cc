@@ -28,8 +28,8 @@ void add_step(DriveSearch& s, const PreparedScene&, double t0) {
   s.starts = {{0.5 * t0}};
 }
 
-// Adds the variables of a piecewise linear waveform: the voltages at its knots (corners), the total time, and the shares of the
-// time between knots.
+// Adds the variables of the family knots, a piecewise linear waveform: the voltages at its knots (corners), the total time, and
+// the relative durations of the lines between knots.
 void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
   for (std::size_t k = 0; k < s.count; ++k)
     s.variables.push_back({fmt::format("level_{}_V", k + 1), s.limits.min_voltage, s.limits.max_voltage});
@@ -47,7 +47,7 @@ void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
   if (s.drive == piezo_drive) {
     const double gap = p.scene.device.contact_gap();
     line([](double) { return 0; }, 1.5, 1);
-    // Start waveforms of a piezo: it pulls towards the contact, then brakes, then returns to its hold level.
+    // Start of a piezo: it pulls towards the contact, then brakes, and returns to its hold level.
     line([&](double part) { return lifting_voltage(p, (part < 0.5 ? -0.4 : 0.3) * gap); }, 2, 1);
   } else {
     line([&](double part) { return (0.7 + 0.2 * part) * s.hold; }, 8, 0.2);   // start waveform: a slow ramp
@@ -55,7 +55,7 @@ void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
     // Start waveform: full pull, then coasting.
     line([&](double part) { return part < 0.55 ? s.hold : 0.5 * s.hold; }, 1.5, 0.1);
     line([&](double part) { return part < 0.75 ? 0.3 * s.hold : 0.6 * s.hold; }, 1.8,
-         0.1);  // start waveform: low voltage, if the other drives close the switch
+         0.1);  // start waveform: low voltage, for a switch that other drives close
   }
 }
 
@@ -86,8 +86,8 @@ Waveform harmonic_at(const DriveSearch& s, std::span<const double> x) {
                   .fade = d.fade};
 }
 
-// Returns straight lines through the voltages with the given durations, which may be 0; lines that exceed the slew limit of the
-// source are longer.
+// Returns the waveform that goes through the voltages by straight lines of the given durations, which may be 0. A line that
+// exceeds the slew limit of the source takes longer.
 Waveform broken_line(const DriveSearch& s, std::span<const double> voltages, std::span<const double> durations) {
   Table table{.time = {0}, .voltage = {s.before}};
   for (std::size_t k = 0; k < voltages.size(); ++k) {
@@ -122,7 +122,7 @@ Parameters of_harmonic(const DriveSearch&, const Waveform& waveform) {
                              duration,         dither.fade / duration};
 }
 
-// True for a table that begins with a jump at t = 0, as searched piecewise linear waveforms without a slew limit do.
+// True for a table of `rows` rows that begins with a jump at t = 0, as a searched waveform without a slew limit does.
 bool begins_with_jump(const DriveSearch& s, const Table& table, std::size_t rows) {
   return table.time.size() == rows && table.time[1] == 0 && table.voltage[0] == s.before;
 }

@@ -47,10 +47,10 @@ std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepare
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == s.drive) driven[k] = found.pulling, coasting[k] = found.coasting;
   }
-  // Use the quickest swing of all modes to the contact, or the bang-bang closing of the first mode alone if the gas film is
-  // compressible.
+  // Use the quickest pull and release of the model with all modes; if the gas film is compressible, that of the first mode
+  // alone.
   if (p.model.film_states() == 0 && p.rest()) {
-    constexpr double longest = 3;  // longest swing (pull, then release) to the contact, in periods of the first mode
+    constexpr double longest = 3;  // longest closing by pull and release, in periods of the first mode
     const std::optional<Swing> swing = quickest_swing(p.model, driven, coasting, longest * first_period(p), p.values_before());
     if (!swing) return std::nullopt;
     found.driven_time = swing->driven_time;
@@ -79,7 +79,7 @@ void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0) {
 }
 
 Waveform s_curve_at(const DriveSearch& s, std::span<const double> x) {
-  // An edge of half a cosine is pi / 2 times as steep in its middle as a straight edge of the same duration.
+  // The steepest slope of a half-cosine edge is pi / 2 times that of a straight edge of the same duration.
   const double rise = std::max(std::abs(x[0] - s.before), std::abs(s.hold - x[0])) * pi / 2 / s.limits.max_slew;
   const double edge = std::max(x[2], rise * (1 + 1e-12));
   return SCurve{.levels = {x[0], s.hold}, .times = {edge + x[1]}, .edge = edge};
@@ -108,7 +108,7 @@ SlewedDither slewed_dither(const DriveSearch& s, double amplitude, double omega,
                            double fade) {
   // With a slew limit the sine begins after the base has risen, and its fades are longer, since the slope of the envelope adds
   // to that of the sine. A fade is at most half the duration; if the sine is still too steep, its amplitude is reduced.
-  const double slew = s.limits.max_slew, rise = longest_rise(s);  // infinite and 0 without a slew limit
+  const double slew = s.limits.max_slew, rise = longest_rise(s);  // infinite and 0 [s] without a slew limit
   const double turning = omega + 1 / decay;
   const double needed = amplitude * turning < slew ? amplitude / (slew - amplitude * turning) : never;
   const double longer = std::min(std::max(fade * duration, needed), duration / 2);
@@ -203,7 +203,8 @@ Waveform bspline_at(const DriveSearch& s, std::span<const double> x) {
   if (std::isfinite(s.limits.max_slew)) spline.levels.push_back(s.before);
   spline.levels.insert(spline.levels.end(), x.begin(), x.end() - 1);
   spline.levels.insert(spline.levels.end(), 2, s.hold);
-  // The slope of the spline is a spline as well, whose values are at most its largest level.
+  // The derivative of the spline is a B-spline, too, and is therefore bounded by its largest coefficient. Lengthen the duration
+  // until this bound keeps the slew limit.
   const std::size_t n = spline.levels.size();
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const double part = (bspline_knot(i + 4, n) - bspline_knot(i + 1, n)) / static_cast<double>(n - 3);
@@ -251,7 +252,7 @@ Waveform sines_at(const DriveSearch& s, std::span<const double> x) {
               .amplitudes = {x.begin(), x.end() - 1},
               .start = longest_rise(s),
               .duration = x.back()};
-  // Beyond the voltage limits all amplitudes are reduced by one factor, so that the spectrum keeps its form.
+  // Beyond the voltage or slew limits all amplitudes are reduced by one factor, so that the ratios of the sines remain.
   Sines alone = sines;
   alone.base = 0;
   const Signal swing = signal(alone);
@@ -261,7 +262,7 @@ Waveform sines_at(const DriveSearch& s, std::span<const double> x) {
   if (up > s.limits.max_voltage - s.hold) share = std::min(share, (s.limits.max_voltage - s.hold) / up);
   if (down > s.hold - s.limits.min_voltage) share = std::min(share, (s.hold - s.limits.min_voltage) / down);
   if (steepest > s.limits.max_slew) share = std::min(share, s.limits.max_slew / steepest);
-  constexpr double precision = 1e-7;  // precision of the computed extrema of the sines, as a share of the sum of all amplitudes
+  constexpr double precision = 1e-7;  // relative error of the computed extrema of the sum of sines
   if (share < 1) {
     for (double& amplitude : sines.amplitudes) amplitude *= share * (1 - precision);
   }

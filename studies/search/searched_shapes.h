@@ -21,9 +21,9 @@ using Parameters = std::optional<std::vector<double>>;
 [[nodiscard]] double lifting_voltage(const PreparedScene& p, double lift);
 /// Returns the period of the first mode [s].
 [[nodiscard]] double first_period(const PreparedScene& p);
-/// A start of a search: full pull, then least pull, so that the switch reaches its contact at rest (swing.h). If the gas film
-/// is compressible, the durations are those of the first mode alone, without damping (bang_bang.h). The other drives stay at
-/// their hold levels.
+/// A starting point of the search: full pull for a time, then least pull (coast), so that the switch arrives at its contact at
+/// rest (swing.h). If the gas film is compressible, the durations are those of the first mode alone, without damping
+/// (bang_bang.h). The other drives stay at their hold levels.
 struct ThrowAndCoast {
   double pulling = 0, coasting = 0;           ///< voltages of the pull and of the coast [V]
   double driven_time = 0, coasting_time = 0;  ///< durations of the pull and of the coast [s]
@@ -31,8 +31,8 @@ struct ThrowAndCoast {
 /// Durations of the pull after first contact in starting points, as multiples of the plain step's time of first contact. Modes
 /// that are still excited decay during this pull.
 inline constexpr std::array pushes = {0.5, 1.0, 2.0, 3.5};
-/// Returns the full pull and the coast of a drive; nothing if the switch cannot reach its contact by pull and coast, and for a
-/// drive that pulls away from the contact.
+/// Returns the pull and the coast of a drive; empty if the switch cannot reach its contact so, and for a drive that pulls away
+/// from the contact.
 [[nodiscard]] std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const PreparedScene& p);
 
 void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0);
@@ -51,10 +51,10 @@ void add_sines(DriveSearch& s, const PreparedScene& p, double t0);
 [[nodiscard]] Parameters of_bspline(const DriveSearch& s, const Waveform& waveform);
 [[nodiscard]] Parameters of_sines(const DriveSearch& s, const Waveform& waveform);
 
-/// Adds amplitude, frequency, phase and start of a dither about the hold level, with bounds. Returns the highest frequency
-/// [rad/s]. Throws InvalidInput if the limits of the drive permit no amplitude.
+/// Adds amplitude, frequency, phase, start, duration and fade of a dither about the hold level, with their bounds. Returns the
+/// upper bound of the frequency [rad/s]. Throws InvalidInput if the limits of the drive permit no amplitude.
 double add_dither_variables(DriveSearch& s, const PreparedScene& p, double t0);
-/// A dither that keeps the slew limit: rise time of its base, start and fades [s], and amplitude [V].
+/// A dither whose slope keeps the slew limit: rise time of its base, start and fades [s], and amplitude [V].
 struct SlewedDither {
   double rise_time = 0, start = 0, fade = 0, amplitude = 0;
 };

@@ -17,7 +17,7 @@ namespace softland::internal {
 
 /// The restrictions of a waveform family on its pulse train.
 struct TrainRules {
-  std::size_t pulses = 0;  ///< number of pulses in the train; 0: given by the user, or the waveform family is not a pulse train
+  std::size_t pulses = 0;  ///< number of pulses; 0: given by the user, or not a pulse train
   bool coasts = false;     ///< true: the drive has no voltage between two pulses
   /// Longest durations of the pulses, as multiples of the plain step's time of first contact; the last entry also applies to
   /// later pulses.
@@ -32,8 +32,8 @@ struct TrainRules {
                                 double edge);
 
 void add_pulse(DriveSearch& s, const PreparedScene& p, double t0);
-/// Adds variables and starts of the waveform family catch: an overshooting initial pulse, a coast, and a level that presses the
-/// switch on its contact.
+/// Adds variables and starts of the waveform family catch: a strong initial pulse, a coast, and a level that presses the switch
+/// on its contact before the hold level.
 void add_catch(DriveSearch& s, const PreparedScene& p, double t0);
 void add_staircase(DriveSearch& s, const PreparedScene& p, double t0);
 void add_coast(DriveSearch& s, const PreparedScene& p, double t0);

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-// Columns with the outcome of the search of a seed, between the columns of figures and of parameters.
+// Keys and names of the columns with the outcome of each search, between the columns of figures and those of parameters.
 constexpr std::array<std::pair<const char*, const char*>, 7> verdict_columns{
     {{"goal_met", "Goal met"},
      {"confirmed", "Confirmed"},
@@ -105,8 +105,8 @@ void SeedStudy::run(const Listener& listener) {
   store_.flush();
 }
 
-// Runs the search of seed k. An interrupted search adds no row, but its evaluations remain in the database file for the
-// continued study.
+// Runs the search with seed number k. An interrupted search adds no row; its stored evaluations shorten a later run of the
+// study.
 void SeedStudy::search(std::uint64_t k, int jobs, const Listener& listener) {
   OptimizeOptions options = search_.options;
   const Progress progress{.stop = search_.options.stop};

@@ -1,5 +1,5 @@
-// Searches from several seeds as one study. The result of each search becomes a row of a database file as soon as the search
-// ends.
+// Searches that differ only in their seeds, as one study. The result of each search becomes a row of a database file as soon as
+// the search ends.
 #pragma once
 
 #include <cstdint>
@@ -42,8 +42,9 @@ class SeedStudy {
     std::function<void(const SceneFile& best)> improvement = {};
   };
 
-  /// Opens the database `file`; seeds that have a row in the file are not searched again. `variables` are the searched
-  /// parameters. Keeps references to `search` and `evaluations`. Throws the exceptions of the constructor of StudyStore.
+  /// Opens the database `file`; seeds that have a row in the file are not searched again. `variables` are the names of the
+  /// searched parameters. Keeps references to `search` and `evaluations`. Throws the exceptions of the constructor of
+  /// StudyStore.
   SeedStudy(const StoredSearch& search, EvaluationStore& evaluations, const std::filesystem::path& file,
             std::vector<std::string> variables, const StoredOrigin& origin);
 

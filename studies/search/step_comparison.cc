@@ -18,7 +18,8 @@ std::vector<double> values_of(std::string_view key, const std::vector<DeviceOutc
   return all;
 }
 
-// True if the quantile at `compared_at` of a figure's values `own` is above that of `of_step`; both may be infinite.
+// True if the 95th percentile (compared_at) of a figure over devices is larger in `own` than in `of_step`; values may be
+// infinite.
 bool is_above(const std::vector<double>& own, const std::vector<double>& of_step) {
   return sample_quantile(own, compared_at) > sample_quantile(of_step, compared_at);
 }

@@ -25,9 +25,8 @@ inline constexpr std::array judged_figures{key_of(&Metrics::largest_impact_veloc
                                                      const std::vector<DeviceOutcome>& step, double significant,
                                                      std::uint64_t seed);
 
-/// Returns the conditions that each of judged_figures is at most the 95th percentile of the plain step's outcomes, and a
-/// rebound at most the larger of this percentile and `significant` [m]. A figure whose percentile is not finite has no
-/// condition.
+/// Returns a condition for each of judged_figures: at most its 95th percentile over the outcomes of the plain step; for the
+/// rebound, at most `significant` [m] if that is larger. A figure without a finite percentile has no condition.
 [[nodiscard]] std::vector<Condition> at_most_step(const std::vector<DeviceOutcome>& step, double significant);
 
 }  // namespace softland

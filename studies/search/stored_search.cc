@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kind = "search";
-// Key in a stored request (plan): waveform families that the user gave.
+// Key of the stored request (plan) with the waveform families that the user gave for a tournament.
 constexpr const char* raced_families_key = "raced_waveform";
 
 // Reads the request of a search from its stored plan. A plan without the member `robust` is of a search on the nominal device.
@@ -34,8 +34,8 @@ SearchRequest request_in(const json& plan) {
   return request;
 }
 
-// Returns the requested starting scenes. If none are requested, returns those of `known`, the stored request of an earlier
-// search that is continued.
+// Returns the scenes whose waveforms the search starts with: those of the request, otherwise those in `known`, the stored
+// request of the earlier search that is continued.
 std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json& known) {
   std::vector<StartingScene> all;
   for (const StartingScene& one : asked.starts) {
@@ -50,8 +50,8 @@ std::vector<StartingScene> starting_scenes(const AskedSearch& asked, const json&
   return all;
 }
 
-// Returns the requested scene. If none is requested, returns that of `known`, the stored request of an earlier search that is
-// continued, with the assignments added.
+// Returns the scene of the request, otherwise that in `known`, the stored request of the earlier search that is continued, as
+// text with the requested assignments added.
 json given_scene(const AskedSearch& asked, const json& known) {
   json given;
   if (asked.given) {
@@ -70,7 +70,7 @@ SceneFile scene_of(const json& given) {
   return scene;
 }
 
-// Returns the plan of a search, its stored request: the texts of the request, with defaults for missing numbers.
+// Returns the stored request (plan) of a search: the texts of the request, completed by the seeds and the number of devices.
 json plan_of(SearchRequest request, const PlannedSearch& search, const std::vector<StartingScene>& starts, const json& given) {
   request.seed = std::to_string(search.options.seed);
   request.seeds = std::to_string(search.seeds);
@@ -93,7 +93,7 @@ json plan_of(SearchRequest request, const PlannedSearch& search, const std::vect
   return plan;
 }
 
-// Returns the first key in which two scenes differ, with both values, as text.
+// Returns, as text, the first key at which two scenes differ, with both values.
 std::string scene_difference(const std::string& there, const std::string& asked) {
   const auto keys = [](const std::string& text) { return SceneFile::parse(text, "scene").json().flatten(); };
   const json before = keys(there), now = keys(asked);

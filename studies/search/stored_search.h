@@ -1,5 +1,5 @@
-// The plan (stored request) of a search, as its database files contain it: everything on which the result depends, so that the
-// search can be continued.
+// The stored request (plan) of a search, as in its database files. It contains everything on which the result depends, so that
+// the search can be resumed.
 #pragma once
 
 #include <atomic>
@@ -15,9 +15,9 @@
 
 namespace softland {
 
-/// The text of the scene that the user gave, with the name and the folder of its file.
+/// The scene as the user gave it.
 struct GivenText {
-  /// Name of the scene file, folder to which relative paths in the scene refer, and text of the scene.
+  /// Name of its file, folder to which relative paths in the scene refer, and text.
   std::string file, folder, text;
 };
 
@@ -44,7 +44,7 @@ struct StoredSearch : PlannedSearch {
 
 /// An earlier search that a new run continues.
 struct KnownSearch {
-  std::filesystem::path place;  ///< folder with the database files of the earlier search
+  std::filesystem::path place;  ///< folder with the database files of the search
   nlohmann::json plan;
   std::string command;  ///< command line that began the earlier search
 };
@@ -54,9 +54,9 @@ struct KnownSearch {
 /// scene.
 [[nodiscard]] StoredSearch stored_search(const AskedSearch& asked, const nlohmann::json& known = {});
 
-/// Plans a search that continues the first search in the database files `stores` that matches the request; this search becomes
-/// `known`. Plans a new search if `stores` is empty. Throws the exceptions of the other stored_search(), and InvalidRequest
-/// about the field `resume`, with the differences, if no search matches.
+/// Plans a search that continues an earlier one: the first in the database files `stores` that the request matches, which is
+/// returned in `known`. Plans a new search if `stores` is empty. Throws the exceptions of the other stored_search(), and
+/// InvalidRequest about the field `resume`, with the differences, if no search matches.
 [[nodiscard]] StoredSearch stored_search(const AskedSearch& asked, const std::vector<std::filesystem::path>& stores,
                                          std::optional<KnownSearch>& known);
 
@@ -69,8 +69,8 @@ struct KnownSearch {
 /// this plan only.
 [[nodiscard]] nlohmann::json plan_of_seed(const nlohmann::json& plan, std::uint64_t seed);
 
-/// Returns the largest number of evaluations that the whole search can make. Most evaluations over varied devices take at least
-/// eight closings.
+/// Returns the largest number of evaluations that the whole search can make. An evaluation over varied devices is counted as
+/// eight closings, since most take at least as many.
 [[nodiscard]] std::int64_t evaluations_at_most(const PlannedSearch& search);
 
 }  // namespace softland

@@ -13,11 +13,11 @@ using Eigen::VectorXd;
 
 struct Flight {
   bool touched = false;
-  std::vector<VectorXd> states;  // modal coordinates and rates after each step of the motion
+  std::vector<VectorXd> states;  // modal coordinates and rates at the start and after each time step
 };
 
-// Simulates the motion from rest under full pull, then under full release, until the switch touches or its contact point turns
-// back.
+// Simulates the motion from rest under full pull and then under full release, until the switch makes contact, or until its
+// contact point moves back.
 class PullAndRelease {
  public:
   PullAndRelease(const Switch& model, Eigen::VectorXd rest, std::vector<double> pulling, std::vector<double> releasing,
@@ -64,8 +64,8 @@ class PullAndRelease {
 
   const Switch& model_;
   Eigen::VectorXd rest_;
-  std::vector<double> pulling_, releasing_;  // voltages of the drives during the pull and during the release [V]
-  double step_, longest_;                    // time step, and longest time of the motion [s]
+  std::vector<double> pulling_, releasing_;  // values of the drives during pull and release [V]
+  double step_, longest_;                    // time step and longest duration of the motion [s]
   Switch::Workspace work_;
 };
 
@@ -89,7 +89,7 @@ std::optional<Swing> quickest_swing(const Switch& model, const std::vector<doubl
   }
   swing.states = drives.fly(high).states;
   swing.driven_time = high;
-  // Only the time step that ends at the release is shorter; the difference is negligible for a starting point.
+  // One time step is shorter, which ends at the release; the error is negligible for a starting point of a search.
   swing.releasing_time = std::max(0.0, static_cast<double>(swing.states.size() - 1) * swing.step - high);
   return swing;
 }

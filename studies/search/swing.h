@@ -19,8 +19,8 @@ struct Swing {
 };
 
 /// Finds the swing with the drive values `pulling`, then `releasing`, from rest under the drive values `before` (none: 0) [V].
-/// Nothing if full pull does not reach the contact within `longest` [s]. Throws InvalidInput for a switch whose gas film is
-/// compressible, or which has no open state.
+/// Returns nothing if full pull does not reach the contact within `longest` [s]. Throws InvalidInput for a switch whose gas
+/// film is compressible, or which has no open state.
 [[nodiscard]] std::optional<Swing> quickest_swing(const Switch& model, const std::vector<double>& pulling,
                                                   const std::vector<double>& releasing, double longest,
                                                   std::span<const double> before = {});

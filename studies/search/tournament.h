@@ -41,30 +41,29 @@ struct Round {
   double step = 0.1;    ///< first step size of a search, as a share of the range of every variable
 };
 
-/// The part of the budget for one search (contender) in a round of the tournament.
+/// The part of the budget for a search (contender) in a round of the tournament.
 struct RoundShare {
   long closings = 0;
   double seconds = std::numeric_limits<double>::infinity();  ///< time that the searches of the round may take [s]
 };
 
-/// The number of a round of the tournament, and the number of a search (contender) in this round.
+/// A search in a tournament: the number of the round, and the number of the search (contender) in this round.
 struct Turn {
   std::size_t round = 0, number = 0;
 };
 
-/// Rounds (stages) of searches that share a budget. The type Contender is the state of a search between rounds, at least its
-/// point.
+/// A sequence of rounds (stages) of parallel searches that share a budget. The type Contender holds the state of a search
+/// between rounds, at least its best point.
 template <class Contender>
 struct Tournament {
   SearchBudget& budget;
   int jobs = 1;
-  /// A function that divides the budget: it returns the share of each of `contenders` searches in a round.
+  /// Divides the budget: returns the part of each search in a round of `contenders` searches.
   std::function<RoundShare(const Round&, std::size_t contenders)> share;
-  /// A function that searches from a contender, within `part`, the round's part of the budget. Start and seed of `chain` are
-  /// not set yet. Called from several threads.
+  /// Runs the search of a contender within `part`, the budget of the round. It must set start and seed of `chain`. Called from
+  /// several threads.
   std::function<void(Contender&, Turn turn, const Chain& chain, SearchBudget& part)> search;
-  /// A function that compares the searches (contenders) after round `round`, the first of which is 0and returns the searches of
-  /// the next round.
+  /// Compares the searches (contenders) after a round, whose number counts from 0, and returns those of the next round.
   std::function<std::vector<Contender>(std::vector<Contender> contenders, std::size_t round)> select;
 
   /// Runs the rounds of the tournament until the budget is spent, no search (contender) continues, or a search would get no
@@ -96,7 +95,7 @@ struct Tournament {
 
 /// Numbers of closings of a search that improves a point.
 struct ImprovingClosings {
-  long before = 0;    ///< number of closings for the cost of the given point, which the budget does not count
+  long before = 0;    ///< closings for the cost of the given point; the budget does not count these
   long searched = 0;  ///< number of closings of the search itself
 };
 /// Searches from the point `x`, and replaces `x` by the best point of the search if that best point costs less on the chain's

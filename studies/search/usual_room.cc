@@ -7,7 +7,7 @@
 namespace softland {
 namespace {
 
-// Reduces the voltage limits to the default limit of the electrode. Returns true if the limits were wider.
+// Reduces the limits of an electrode's voltage to the default limit. Returns true if the limits were wider.
 bool narrow(DriverLimits& limits, const PullInVoltages& pull_in) {
   const double usual = default_limit(pull_in);
   const DriverLimits before = limits;
@@ -32,7 +32,7 @@ std::vector<SearchSetting> within_usual_room(const std::vector<SearchSetting>& s
     if (!is_narrower) return {};
     try {
       one.space = SearchSpace(one.within_limits(), actuator, names[k], one.scale.step.initial_contact_time);
-    } catch (const InvalidInput&) {  // none: the hold level exceeds the default limit
+    } catch (const InvalidInput&) {  // no settings: the hold level exceeds the default limit
       return {};
     }
   }

@@ -13,10 +13,10 @@
 namespace softland {
 namespace {
 
-constexpr double as_hard = 1e-3;  // relative excess of impact figures over those under the plain step that is ignored
+constexpr double as_hard = 1e-3;  // smaller relative excesses of impact figures over the plain step's are ignored
 
-// Returns the figure of the target in a closing; infinite if the closing has no such figure. The figure of a sum is the
-// weighted mean of figures relative to the baseline.
+// Returns the figure of merit that a target is about, for a closing `m`; infinite if the closing has no such figure. For a sum
+// of targets, this is the weighted mean of the figures relative to the baseline.
 double figure(const Aim& aim, const Metrics& m, const Metrics& baseline) {
   if (aim.has_own_objective() && !m.touched()) return std::numeric_limits<double>::infinity();
   const double value = aim.mean(m, baseline, [&](const TargetRow& row) {
@@ -91,9 +91,9 @@ void Verification::move_to(OptimizeResult& result) {
   result.goal_met = best_->confidence >= Confidence::meets_goal;
   result.confirmed = best_->confidence == Confidence::confirmed;
   const Metrics& m = best_->closing.metrics;
-  // If the figures of the target are equal, as with a plain step that does not bounce, compare the costs.
+  // If the plain step and the best waveform are equal in this figure, for example without a bounce, compare their costs.
   const double own = figure(target_, m, baseline_), of_step = figure(target_, baseline_, baseline_);
-  // A closing that has not settled can be better only than a plain step under which the switch touches without settling.
+  // An unsettled closing can be better only than a plain step that makes contact and does not settle either.
   const bool may_be_better = (target_.from_the_start() != nullptr && m.touched()) || m.settled ||
                              (!baseline_.settled && std::isfinite(baseline_.initial_contact_time));
   result.better_than_baseline =
@@ -112,7 +112,8 @@ void Verification::move_to(OptimizeResult& result) {
   result.best_cost = best_->found.cost;
 }
 
-// True if the goal is met and the conditions on figures that a confirming simulation computes are fulfilled.
+// True if a closing meets the goal and fulfils the conditions. Conditions on figures that its simulation does not compute are
+// left out.
 bool Verification::met(const Metrics& m) const { return goal_met(target_, m, baseline_) && !(broken(known(m), m) > 0); }
 
 std::vector<Condition> Verification::known(const Metrics& m) const {
@@ -133,8 +134,7 @@ bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline) {
     return best.touched() && figure(target, best, baseline) < figure(target, baseline, baseline);
   if (!best.settled || best.bounce_count > 0) return false;
   if (!target.has_own_cost()) return true;
-  // Under the plain step the switch bounces for many times its closing time, so that the step's settling time would be too weak
-  // a goal.
+  // The plain step bounces for many times its closing time: to settle earlier than that would be too weak a goal.
   const bool is_settling = !target.is_sum() && target.is_about(Target::settling);
   if (is_settling && std::isfinite(baseline.initial_contact_time))
     return best.permanent_contact_time <= settling_goal * baseline.initial_contact_time;

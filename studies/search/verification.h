@@ -31,14 +31,15 @@ class Verification {
   Verification(const SearchSetting& setting, const OptimizeOptions& options);
 
   void add(FoundWaveform candidate);
-  /// Returns the cost of the best candidate waveform so far (if it is confirmed, the worst cost over numbers of modes);
-  /// infinite without candidates.
+  /// Returns the cost of the best candidate so far: its worst cost over several numbers of modes if confirmed, otherwise its
+  /// cost in the search. Infinite without candidates.
   [[nodiscard]] double best_cost() const;
   /// True if the best candidate waveform is confirmed with a tighter integrator and with more modes.
   [[nodiscard]] bool confirmed() const { return best_ && best_->confidence == Confidence::confirmed; }
-  /// True if no candidate waveform whose cost is at least `cost` can be better than the best candidate so far.
+  /// True if no further candidate with a cost of `cost` or more can be better than the best one: that one is confirmed and
+  /// costs less.
   [[nodiscard]] bool decided(double cost) const;
-  /// True if the best candidate waveform meets its goal with the modes of the scene, but not with more modes.
+  /// True if the best candidate meets its goal with the scene's number of modes, but not with more modes.
   [[nodiscard]] bool belongs_to_modes() const { return best_ && best_->failed == Varied::modes; }
   /// Moves the best candidate waveform to the result, if there is one.
   void move_to(OptimizeResult& result);
@@ -51,12 +52,12 @@ class Verification {
   struct Verified {
     FoundWaveform found;
     Closing closing;
-    double cost = 0;    // cost of the candidate waveform in the search; if confirmed, the worst cost over numbers of modes
-    double figure = 0;  // figure of the target in the closing; rebounds that are not significant are equal
+    double cost = 0;    // cost in the search; if confirmed, worst cost over numbers of modes
+    double figure = 0;  // figure of merit of the target; equal for all rebounds that are not significant
     double broken = 0;  // sum of the relative violations of the search's conditions
-    double excess = 0;  // relative excess of the closing's impact figures over those under the plain step
+    double excess = 0;  // relative excess of the impact figures over those under the plain step
     Confidence confidence = Confidence::touches;
-    // The change of the model (integrator, modes) under which the goal is not met; none if it is always met.
+    // The numerical change (integrator, modes) with which the candidate misses its goal; none if it meets the goal with all.
     std::optional<Varied> failed = {};
 
     [[nodiscard]] bool better_than(const Verified& other) const;
@@ -67,13 +68,13 @@ class Verification {
   [[nodiscard]] std::optional<Varied> undone_by(const PreparedScene& scene) const;
   [[nodiscard]] std::vector<Condition> known(const Metrics& m) const;
 
-  const SearchSetting worst_;  // setting of the search whose cost of a candidate waveform is the worst over numbers of modes
+  const SearchSetting worst_;  // setting whose cost is the worst over closings with several numbers of modes
   const PreparedScene& given_;
   const Metrics& baseline_;
   Aim target_;
   std::vector<Condition> conditions_;
-  // True if closings harder than the plain step are worse: not for a user's own objective, nor if the plain step breaks a
-  // condition.
+  // True if a candidate is worse for closing harder than the plain step. False for a user's own objective, and if the plain
+  // step violates a condition.
   bool judges_hardness_;
   Progress progress_;
   std::optional<Verified> best_;
