@@ -12,7 +12,7 @@ namespace softland::internal {
 namespace {
 
 // Shares of the evaluations of an epoch, which is one cycle of sampling, local searches and refinement. `refining` is for the
-// user's starts; with a gradient method it is spent twice: before and after the change to that method.
+// user's starts; with a gradient method this share is spent twice: before and after the change to that method.
 constexpr double refining = 0.2;
 constexpr double sampling = 0.15;
 // Share of the remaining evaluations for local searches near the best point (hops), if the search has a gradient and continues

@@ -28,7 +28,7 @@ using Point = std::vector<double>;
 /// Exception by which a BudgetedObjective ends the run of a library. Each backend translates Cut as its library requires.
 struct Cut {};
 
-/// Value of the objective at a point, as an optimizer library receives it: an infeasible point has a finite penalty above all
+/// Value of the objective at a point, as given to an optimizer library. At an infeasible point it is a finite penalty above all
 /// values seen before.
 struct Answer {
   double value;

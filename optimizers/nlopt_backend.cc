@@ -28,7 +28,8 @@ constexpr double step_tolerance_inside_mlsl = 1e-4;
 struct Callback {
   BudgetedObjective& budgeted;
   bool with_conditions;  ///< true when the method uses the conditions of the problem
-  /// For DIRECT: the value that NLopt's middle, 0.5, of each variable means; empty: NLopt's values are used as they are.
+  /// For DIRECT: place at which the problem is evaluated where NLopt's variable is 0.5, by variable; both scales are [0, 1] and
+  /// piecewise linear. Empty: NLopt's variables are used unchanged.
   std::vector<double> bent_middle;
 
   [[nodiscard]] Point to_point(const std::vector<double>& x) const {

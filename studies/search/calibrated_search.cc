@@ -20,13 +20,13 @@ constexpr double coarse_error = 0.01, fine_error = 0.002;
 constexpr double least_times_of_error = 20;
 // Relative errors of the measured dynamic pull-in voltage Vdp, for each of which the performance of the waveforms is computed.
 constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};
-constexpr double most_rows = 4;  // most rows of results with a calibration, for progress
+constexpr double most_rows = 4;  // largest number of rows of results with a calibration, for reports of progress
 // Number of fresh devices (new to the search) that show the effect of each error of the measured dynamic pull-in voltage Vdp.
 constexpr std::size_t devices_by_error = 256;
 // Share of bounce-free devices under the best uncalibrated waveform from which on the searches with a calibration maximise this
 // share.
 constexpr double ranked_by_share = 0.25;
-// Number of the random stream of the devices on which searches with a calibration try waveforms; robust_search.cc uses others.
+// Number of the random sample of devices on which searches with a calibration try waveforms; robust_search.cc uses others.
 constexpr std::uint64_t which_measured = 2;
 
 }  // namespace
@@ -66,7 +66,7 @@ void RobustSearch::measure_ahead() {
   if (tells_time()) (void)calibrated({.time_error = usual_time_error});
 }
 
-// True if devices are calibrated by the closing time under a slow voltage step: this time is then many times its measurement
+// True if devices are calibrated by the closing time under a slow voltage step: this time must be many times its measurement
 // error. For a quicker switch, a precise measurement of pull-in voltage and period replaces the closing time.
 bool RobustSearch::tells_time() const { return meter_->closing_time() > least_times_of_error * usual_time_error; }
 

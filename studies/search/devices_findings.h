@@ -95,7 +95,7 @@ struct DevicesFindings {
   };
   /// Contact gaps of devices over time, under the plain step and under the waveform of best.toml, at equal time steps.
   struct Courses {
-    double end = Metrics::unset;              ///< time of the last gap in `step` and `own`; the first is at t = 0 [s]
+    double end = Metrics::unset;              ///< last instant of the gaps in `step` and `own`; the first is t = 0 [s]
     double unit = Metrics::unset;             ///< unit of the gaps in `step` and `own` [m]
     std::vector<std::vector<int>> step, own;  ///< contact gaps by device, then by instant [`unit`]
   };

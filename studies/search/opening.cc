@@ -35,11 +35,11 @@ constexpr double time_share = 0.3;
 // Additional weight, in the cost, of the part of the vibration beyond the band about the open position.
 constexpr double outside_share = 5;
 constexpr double stays_closed = 10;         // cost of an opening waveform under which the switch stays closed
-constexpr double touched_again = 0.5;       // cost of every contact after the first opening
+constexpr double touched_again = 0.5;       // additional cost of every contact after the first opening
 constexpr double opening_tolerance = 1e-5;  // relative tolerance of the integrator in simulated openings
 // Number of periods of the first mode, after all drives are at 0 V, over which a candidate's vibration is measured.
 constexpr double seen_for = 1;
-constexpr double watched_for = 3;  // the same number for the best waveform, at least
+constexpr double watched_for = 3;  // least number of periods over which the best waveform's vibration is measured
 
 // Time in which a voltage source settles at its hold level before the command to open, in time constants of the source.
 constexpr double settled_after = 50;

@@ -23,9 +23,9 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t most_candidates = 8;  // most candidate waveforms that are verified at first
-// For a target with a separate cost: number of candidates of each waveform family that are verified in addition, those most
-// likely to close without a bounce.
+constexpr std::size_t most_candidates = 8;  // largest number of candidates that are verified at first
+// For a target whose cost differs from that of bounce: number of candidates of each waveform family that are verified in
+// addition, those most likely to close without a bounce.
 constexpr std::size_t most_sure = 4;
 // Number of candidates of each waveform family that are verified in addition if the first ones were not confirmed.
 constexpr std::size_t most_of_family = 4;
@@ -38,7 +38,7 @@ constexpr double least_for_landings = 60;
 constexpr double end_of_search = 0.6, end_of_gentle = 0.75, end_of_worst = 0.85;
 // Impact velocity of starting waveforms that reach the contact at rest, as a share of that under the plain step.
 constexpr double soft_touch = 0.01;
-constexpr double distinct = 1.01;  // of two verified candidates the cost differs by at least this factor
+constexpr double distinct = 1.01;  // costs of two verified candidates differ at least by this factor
 // Number of waveform families that are searched on by the worst cost over the scene's number of modes and more modes.
 constexpr std::size_t families_sifted = 2;
 // The search by the worst cost over several numbers of modes gets this part of the evaluations: one in 50.
@@ -150,8 +150,8 @@ class RunningSearch {
         ++added;
       }
     }
-    // For a target with a separate cost, verify further candidate waveforms whose target cost is below that of the best
-    // verified one, those with the least bounce cost (guide cost) first.
+    // For a target whose cost differs from that of bounce, verify further candidate waveforms whose target cost is below that
+    // of the best verified one, those with the least bounce cost (guide cost) first.
     if (options_.target.has_own_cost()) {
       for (const FamilySearch& family : families_) {
         for (std::size_t k = 0; k < most_sure; ++k) {
@@ -244,13 +244,12 @@ class RunningSearch {
     const long before = all_.evaluations;
     if (families_.size() == 1)
       return go_on(0, evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, before > 0);
-    // Search by the cost of bounce first, in all waveform families: the best waveform is then a candidate for the actual
-    // target.
+    // Search by the cost of bounce first, in all waveform families: the best waveform is then a candidate for any target.
     const long own = has_own ? evaluations / target_share : 0;
     const double bounce_seconds = all_seconds * (has_own ? 1 - 1.0 / target_share : 1);
     if (!run_families(evaluations - own, bounce_seconds, has_own ? Costs::guide : Costs::same)) return false;
-    // Then search by the separate cost of the target, from the best points of every waveform family. `rest` is the whole
-    // remaining budget.
+    // Then search by the target's own cost, if it differs from that of bounce, from the best points of every waveform family.
+    // `rest` is the whole remaining budget.
     const long rest = evaluations - (all_.evaluations - before);
     return !has_own || rest <= 0 || run_families(rest, budget_.seconds_left(), Costs::target);
   }
@@ -272,8 +271,8 @@ class RunningSearch {
   }
 
   // Searches each waveform family with a share of the budget, and the best family with the rest. By the cost of bounce, each
-  // family begins at the results of earlier families. By the separate cost of the target, only the best family does so, since
-  // all would end in one minimum. Returns false if the search was interrupted or failed.
+  // family begins at the results of earlier families. By a target's own cost, only the best family does so, since otherwise all
+  // families would end in one minimum. Returns false if the search was interrupted or failed.
   bool run_families(long all_evaluations, double all_seconds, Costs costs) {
     const SearchBudget all(budget_, all_evaluations, all_seconds);
     const double share = opening / static_cast<double>(families_.size());
@@ -382,8 +381,8 @@ class SearchBeyondModes {
     own_.on_improvement = {};
   }
 
-  /// Continues a search with the settings `gentle`, whose voltage edges are slower, and then by sift(). Returns the number of
-  /// evaluations.
+  /// Continues a search with the settings `gentle`, whose voltage edges are slower, and then by the worst cost over several
+  /// numbers of modes. Returns the number of evaluations.
   long go_on(const RunningSearch& search, const std::vector<SearchSetting>& settings, const std::vector<SearchSetting>& gentle) {
     if (!verified_.belongs_to_modes()) return 0;
     if (gentle.empty()) return sift(search, settings);

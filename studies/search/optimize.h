@@ -45,8 +45,8 @@ struct SearchEstimate {
 };
 
 /// Returns the default number of evaluations. With this number the searches from every tried seed found a bounce-free waveform,
-/// for the shipped scenes and their variants. A piezo needs more evaluations than an electrode; a target with a separate cost
-/// gets 1.5 times as many as `bounce`.
+/// for the shipped scenes and their variants. A piezo needs more evaluations than an electrode; a target whose cost differs
+/// from that of `bounce` gets 1.5 times as many as `bounce`.
 [[nodiscard]] long default_budget(const Aim& target, Shaped drives);
 
 /// Evaluation::index of waveforms that the user gave: the scene's own waveform and OptimizeOptions::starts.
@@ -179,8 +179,8 @@ inline constexpr double settling_goal = 1.3;
 /// True if the closing `best` meets the goal of the target. For a user objective from Aim::from_the_start(): the switch touches
 /// with a lower value than the baseline. For all other targets: the contact settles without a significant rebound. For
 /// `settling`: it also settles within settling_goal, or before the baseline does, if the baseline does not touch. For other
-/// targets with a separate cost, and for sums of targets: their figure is also better than the baseline's. The figure of a sum
-/// is the weighted mean of the figures relative to the baseline.
+/// targets whose cost differs from that of bounce, and for sums of targets: their figure is also better than the baseline's.
+/// The figure of a sum is the weighted mean of the figures relative to the baseline.
 [[nodiscard]] bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline);
 
 }  // namespace softland

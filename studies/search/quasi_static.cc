@@ -92,8 +92,8 @@ Waveform slewed(const std::vector<std::pair<double, double>>& points, double bef
   return table;
 }
 
-// Returns pairs (square of the level of the holding electrode, voltage of the carrying drive at which the nominal design then
-// makes contact). The levels are spaced evenly in their square, up to `most` [V].
+// Returns pairs: the square of the level of the holding electrode, and the voltage at which the other drive then brings the
+// nominal design to its contact. The levels are spaced evenly in their square, up to `most` [V].
 std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& prepared, const StableApproach& approach,
                                                          double most) {
   constexpr int levels = 6;
@@ -108,15 +108,15 @@ std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& pr
   return all;
 }
 
-// Starts of a search: the rise ends below the voltage at which the nominal design makes contact (by slow_before if the shaper
-// has more than two impulses, else by fast_before), and the line ends above this voltage. Unit: standard deviation of this
-// voltage over devices.
+// Starts of a search: the first ramp (rise) ends below the voltage at which the nominal design makes contact, by slow_before if
+// the shaper has more than two impulses, else by fast_before; the second ramp (line) ends above this voltage. Unit: standard
+// deviation of this voltage over devices.
 constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;
 // Least standard deviation over devices of the voltage at which contact is made, as a share of this voltage.
 constexpr double least_deviation = 0.005;
 constexpr double nearest_points = 1e-6;  // least distance in time of two corners of a waveform, in periods of the first mode
-// Wait between the end of the line and the rise of the holding electrode, if this rise is a plain step, and if its waveform is
-// searched; in periods of the first mode.
+// Wait between the end of the second ramp (line) and the rise of the holding electrode, if this rise is a plain step, and if
+// its waveform is searched; in periods of the first mode.
 constexpr double step_after_line = 1.2, holder_after_line = 0.8;
 constexpr double settle = 0.5;  // duration of an edge to the hold level, in periods of the first mode
 // Levels of the holding electrode before contact, as shares of its hold level: least level at contact in a start, and upper
@@ -124,8 +124,8 @@ constexpr double settle = 0.5;  // duration of an edge to the hold level, in per
 constexpr double least_contact_level = 0.16, most_low = 0.5;
 // Levels of the holding electrode before contact in further starts, as shares of its hold level.
 constexpr std::array lower_levels{0.03, 0.12};
-// Duration of the carrying drive's return to its hold level, if the waveform of the holding electrode is searched, and if this
-// is a plain step; wait before the return in the latter case. Unit: periods of the first mode.
+// Return to its hold level of the drive that carries the switch to its contact: duration if the waveform of the holding
+// electrode is searched, duration if that is a plain step, and wait before the latter. Unit: periods of the first mode.
 constexpr double back = 1, back_of_step = 5.7, back_after = 2;
 
 }  // namespace
@@ -185,7 +185,8 @@ double QuasiStatic::share(double deviations) const {
 // Returns the waveform parameters by closed formulas, for devices that carry a steady contact force from `steady` on [s].
 std::vector<double> QuasiStatic::closed_form(double steady, double low) const {
   const double rise = share(impulses_ > 2 ? -slow_before : -fast_before), end = share(beyond);
-  // Begin of the line, in periods of the first mode: the end of the rise, or half a period earlier if the line is shaped, too.
+  // Begin of the second ramp (line), in periods of the first mode: the end of the first ramp (rise), or half a period earlier
+  // if the line passes the input shaper, too.
   const double risen = static_cast<double>(impulses_ + 1) / 2 - (impulses_ > 2 ? 0.5 : 0);
   const double after = holding_ == Holding::by_step  ? step_after_line
                        : holding_ == Holding::shaped ? holder_after_line + settle
@@ -210,8 +211,8 @@ void QuasiStatic::bound(const std::vector<double>& start, bool is_paced) {
     variables_.push_back({std::move(name), lower, upper});
   };
   const double line = start[1];
-  // Search bounds of the voltages at the end of the rise and at the end of the line: distance from the voltage at which contact
-  // is made, in standard deviations of this voltage over devices.
+  // Search bounds of the end voltages of the first ramp (rise) and of the second ramp (line): distance from the voltage at
+  // which contact is made, in standard deviations of this voltage over devices.
   constexpr double earliest = 9, latest = 6;
   between(carrier + "rise", std::max(0.3, share(-earliest)), share(1));
   is_paced ? between(carrier + "line_s", std::max(0.2 * period_, line - 2 * period_), line + 2 * period_)

@@ -71,7 +71,7 @@ struct RobustAim {
 /// Devices, and for each the exact factors that a per-device calibration measures.
 struct CalibratedEnsemble {
   std::vector<SampledDevice> devices;
-  std::vector<DeviceUnits> exact;  ///< exact factors on the devices' waveforms; 1 for an invalid device
+  std::vector<DeviceUnits> exact;  ///< exact factors by which the devices' waveforms are scaled; 1 for an invalid device
 };
 /// Builds the devices, and computes their quantities for a calibration without measurement error, pull-in voltages to the
 /// relative `precision`. Throws Interrupted if `progress` asks to stop.
@@ -85,7 +85,7 @@ inline constexpr double compared_precision = 1e-5;
 /// Devices, with the factors by which a per-device calibration scales their waveforms.
 struct BuiltEnsemble {
   std::vector<SampledDevice> devices;
-  /// Measured factors on each device's waveforms, relative to those of the nominal device.
+  /// Measured factors by which each device's waveforms are scaled, relative to those of the nominal device.
   std::vector<DeviceUnits> units;
 };
 /// Returns the devices with their measured factors: the exact ones with random errors of the calibration `known`, which depend

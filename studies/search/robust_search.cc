@@ -21,12 +21,12 @@ namespace softland {
 namespace {
 
 constexpr std::uint64_t devices_of_choice = 512, least_of_verdict = 500;
-constexpr std::size_t most_of_race = 3;  // best waveforms taken from a tournament, by each measure
+constexpr std::size_t most_of_race = 3;  // number of candidates from a tournament, by each measure
 // Latest permitted first contact, as a multiple of that under the plain step (95th percentiles). The second multiple is for
 // waveforms under which half the devices or more are bounce-free.
 constexpr double most_times = 5, most_times_of_landings = 7;
 constexpr double margin = 0.98;      // upper limit of a chosen waveform's figures, as a share of those under the plain step
-constexpr double more_open = 0.005;  // how much larger the share of devices that stay open may be than under the plain step
+constexpr double more_open = 0.005;  // permitted excess of the share of devices that stay open over that under the plain step
 constexpr std::uint64_t which_searched = 0, which_chosen = 1;
 constexpr double least_of_race = 0.4,
                  end_of_race =
@@ -38,7 +38,8 @@ constexpr double alike = 1.05;  // candidates with a cost of up to this multiple
 // The quickest candidate with a cost of up to this multiple of the least is chosen, if no drive can move the switch to its
 // contact through stable equilibria.
 constexpr double little_more = 1.25;
-constexpr std::uint64_t path_devices = 512;  // devices for the share that can close through stable equilibria
+// Number of devices for computing the share that can close through stable equilibria.
+constexpr std::uint64_t path_devices = 512;
 // Paces of the quasi-static approach: permitted time until a steady contact, as a multiple of that under the plain step. A
 // third pace of 1 is searched, too.
 constexpr double fast = 0.49, slow = 1.96;

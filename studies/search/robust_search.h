@@ -47,8 +47,8 @@ struct RobustSearchOptions {
   /// quasi-static approach.
   bool is_of_before = false;
   long closings = race_closings;  ///< total number of closings of the tournament of waveform families
-  bool are_a_budget = false;      ///< true: the tournament never makes more than `closings`, even if many devices are bounce-free
-  bool counts_work = false;       ///< true: the tournament makes fewer closings than `closings` if they are slow (search_work.h)
+  bool are_a_budget = false;      ///< true: `closings` is an upper limit, even if many devices are bounce-free
+  bool counts_work = false;       ///< true: the tournament makes fewer closings if they are slow (search_work.h)
   /// Function that is called with every new best candidate waveform; from any thread, one call at a time.
   std::function<void(const Leading&)> on_leading = {};
 };
@@ -79,7 +79,8 @@ inline constexpr double worth_choosing = 0.9;
 /// True if row `a` is better than row `b`: it has more bounce-free devices, or, if both have fewer than half, softer impacts.
 [[nodiscard]] bool lands_better(const DevicesRow& a, const DevicesRow& b);
 
-/// A candidate for the best waveform, with its performance on devices that the searches have not used (devices of choice).
+/// A candidate for the best waveform, with its performance on the devices on which the best one is chosen (not used by the
+/// searches).
 struct ChosenFrom {
   std::string measure, family;  ///< measure of risk and waveform family of the search that found it, as in RaceEntry
   DriveWaveforms waveforms;
@@ -87,7 +88,7 @@ struct ChosenFrom {
       parameters;  ///< waveform parameters by drive.name; empty for some waveforms of the search on the nominal device
   std::vector<Variable> variables;
   long closings = 0;
-  // The following members are the performance on the devices of choice.
+  // The following members are the performance on the devices on which the best candidate is chosen.
   double bounce_free = 0, tail = 0;  ///< share of bounce-free devices; cost by the tail measure
   double measured = 0;  ///< measure of risk R(s) alone, without the cost of time and conditions, see RobustCost::measured()
   /// 95th percentiles over the devices of first contact time [s] and impact velocity [m/s].
@@ -141,10 +142,10 @@ class RobustSearch {
   /// Returns `nominal`, the estimated work of the search on the nominal device, with the work of this search added.
   [[nodiscard]] SearchEstimate estimate(SearchEstimate nominal) const;
 
-  /// Runs the tournament and the quasi-static searches, evaluates their best candidates on the devices of choice, and computes
-  /// the calibrations of the fresh devices. The numbers of the waveform families in the memory begin at `before`. Calls
-  /// `looked` once, after the first candidate was evaluated on the devices of choice. Leaves `reserved` [s] of a time budget to
-  /// later work other than the final evaluation. Throws Interrupted if a stop is requested.
+  /// Runs the tournament and the quasi-static searches, evaluates their best candidates on the devices for choosing the best
+  /// one, and computes the calibrations of the fresh devices. The numbers of the waveform families in the memory begin at
+  /// `before`. Calls `looked` once, after the first candidate was evaluated on the devices for choosing. Leaves `reserved` [s]
+  /// of a time budget to later work other than the final evaluation. Throws Interrupted if a stop is requested.
   void run(std::size_t before, std::function<void()> looked, double reserved);
   /// Makes run() end soon, without a usable result; from any thread.
   void give_up() { budget_.give_up(); }
@@ -162,11 +163,12 @@ class RobustSearch {
   [[nodiscard]] const RobustCost& cost() const { return *cost_; }
   [[nodiscard]] const RaceAims& aims() const { return aims_; }
   [[nodiscard]] const std::vector<Condition>& conditions() const { return conditions_; }
-  /// Evaluates a candidate waveform on the devices of choice (not used by the searches), and adds it to placed().
+  /// Evaluates a candidate on the devices on which the best one is chosen (not used by the searches), and adds it to placed().
   void place(ChosenFrom candidate);
   /// Returns the best candidate so far of an interrupted search; null if it is no better than the plain step.
   [[nodiscard]] const ChosenFrom* leader() const;
-  /// Returns the candidates that were evaluated while the tournament ran, with their performance on the devices of choice.
+  /// Returns the candidates that were evaluated while the tournament ran, with their performance on the devices on which the
+  /// best one is chosen.
   [[nodiscard]] std::vector<ChosenFrom> looked_at() const;
   [[nodiscard]] const std::vector<DeviceOutcome>& step_on_others() const { return step_on_others_; }
   /// Returns the ranked candidate waveforms, the best first; candidates with ChosenFrom::is_good_enough come before all others.
@@ -256,22 +258,22 @@ class RobustSearch {
   std::vector<Condition> conditions_;  // the user's conditions, with numbers for limits relative to the plain step
   RobustAim tail_aim_;
   RaceAims aims_;
-  std::vector<Condition> at_most_step_;  // conditions that each of judged_figures is at most as under the plain step
-  // Costs over the devices on which the tournament tries waveforms, and over the devices of choice.
+  std::vector<Condition> at_most_step_;  // conditions: each of judged_figures must be at most that under the plain step
+  // Costs over the devices on which the tournament tries waveforms, and over those on which the best candidate is chosen.
   std::optional<RobustCost> cost_, others_;
   FreeTime free_;
   std::vector<Contender> paced_;
   RaceResult race_, race_in_usual_room_;
   std::optional<Bounds> bounds_;
-  // Outcomes of the devices of choice under the plain step.
+  // Outcomes under the plain step of the devices on which the best candidate is chosen.
   std::vector<DeviceOutcome> step_on_others_;
   std::function<void()> looked_;
   std::vector<Placed> looked_at_;  // candidates evaluated while the tournament ran, in order of time
-  std::optional<Placed> leader_;   // the best of looked_at_
+  std::optional<Placed> leader_;   // the best candidate in looked_at_
   std::vector<Placed> placed_;     // candidates evaluated by place(), in order of time
   // Fresh devices (new to the search) with exact factors for a calibration by pull-in voltage, and by closing time.
   std::optional<CalibratedEnsemble> calibrated_by_pull_in_, calibrated_by_time_;
-  // Computes the quantities of a calibration; none if devices cannot be measured.
+  // Simulates the measurements of a calibration; empty if devices cannot be measured.
   std::optional<PullInMeter> meter_;
 };
 

@@ -43,7 +43,7 @@ class SearchBudget {
   [[nodiscard]] long left() const { return evaluations_ - taken_; }
   /// Returns the share of the evaluations that is spent, 0 to 1.
   [[nodiscard]] double share_taken() const;
-  /// Sets the number of evaluations of the whole budget, those already spent included.
+  /// Sets the number of evaluations of this budget, including those already spent.
   void allow(long evaluations) { evaluations_ = evaluations; }
 
   /// Returns the time of the budget [s]; infinite without a limit.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t most_of_front = 6;
 constexpr std::size_t drawn_devices = 50, instants_of_course = 240;
-constexpr double units_of_gap = 5000;  // stored contact gaps are whole multiples of the gap at rest over this number
+constexpr double units_of_gap = 5000;  // stored contact gaps are integers; this many units make the gap at rest
 // The stored contact gaps end at this multiple of the time until the contact force is steady.
 constexpr double after_steady = 1.1;
 

@@ -50,8 +50,8 @@ std::vector<Condition> conditions_of(const SearchRequest& request, std::span<con
   return all;
 }
 
-// Parses the conditions of a request: to `devices` for the search over devices, and those on figures that a single device has
-// also to `drawing`, for the search on the nominal device.
+// Parses the conditions of a request: all into `devices`, for the search over devices; those on figures that a single device
+// has also into `drawing`, for the search on the nominal device.
 void read_shared_conditions(const SearchRequest& request, std::vector<Condition>& drawing, std::vector<Condition>& devices) {
   devices = conditions_of(request, device_figures);
   for (const std::string& text : request.constrain) {

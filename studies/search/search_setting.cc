@@ -184,7 +184,7 @@ SearchCosts SearchSetting::worst_price(const RecordedClosing& closing) const {
 }
 
 Metrics SearchSetting::with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const {
-  metrics.hold_force = baseline.metrics.hold_force;  // rest under the hold levels, which a search never changes
+  metrics.hold_force = baseline.metrics.hold_force;  // figures of the closed switch at rest: no search changes the hold levels
   metrics.capacitance = baseline.metrics.capacitance;
   metrics.resistance = baseline.metrics.resistance;
   set_drive_figures(metrics, given, signals);
@@ -208,8 +208,8 @@ SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
   for (const Condition& one : followed_conditions()) costs.apart->excess.push_back(excess(one, figures));
   const double violation = broken(conditions, figures);
   if (!(violation > 0)) return costs;
-  // The penalty of violated conditions is below 3, less than the cost of not reaching the contact. For a target with a separate
-  // cost, 1 is added, so that every violation costs more than any closing that fulfils the conditions.
+  // The penalty of violated conditions is below 3, less than the cost of not reaching the contact. For a target whose cost
+  // differs from that of bounce, 1 is added, so that every violation costs more than any closing that fulfils the conditions.
   const double penalty = 3 * violation / (1 + violation);
   costs.guide += penalty;
   costs.target += target.has_own_cost() ? 1 + penalty : penalty;

@@ -29,7 +29,8 @@ namespace softland {
 inline constexpr double never_touched = 10;
 
 struct RecordedClosing;
-/// The point of the search space whose cost was computed last, with its simulated closing: the gradient needs the same closing.
+/// The point of the search space whose cost was computed last, with its simulated closing, which a gradient at this point uses
+/// again.
 struct LastClosing {
   std::vector<double> x = {};
   std::shared_ptr<const RecordedClosing> closing = {};

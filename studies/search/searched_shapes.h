@@ -31,8 +31,8 @@ struct ThrowAndCoast {
 /// Durations of the pull after first contact in starting points, as multiples of the plain step's time of first contact. Modes
 /// that are still excited decay during this pull.
 inline constexpr std::array pushes = {0.5, 1.0, 2.0, 3.5};
-/// Returns the pull and the coast of a drive; empty if the switch cannot reach its contact so, and for a drive that pulls away
-/// from the contact.
+/// Returns the pull and the coast of a drive; empty if no pull and coast brings the switch to its contact, and for a drive that
+/// pulls away from the contact.
 [[nodiscard]] std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const PreparedScene& p);
 
 void add_s_curve(DriveSearch& s, const PreparedScene& p, double t0);

@@ -17,7 +17,7 @@ namespace softland {
 
 /// The scene as the user gave it.
 struct GivenText {
-  /// Name of its file, folder to which relative paths in the scene refer, and text.
+  /// Name of the scene's file, folder to which relative paths in the scene refer, and text of the scene.
   std::string file, folder, text;
 };
 

@@ -57,7 +57,8 @@ class Verification {
     double broken = 0;  // sum of the relative violations of the search's conditions
     double excess = 0;  // relative excess of the impact figures over those under the plain step
     Confidence confidence = Confidence::touches;
-    // The numerical change (integrator, modes) with which the candidate misses its goal; none if it meets the goal with all.
+    // The change of the simulation (integrator, modes) under which the candidate misses its goal; none if it meets the goal
+    // under all.
     std::optional<Varied> failed = {};
 
     [[nodiscard]] bool better_than(const Verified& other) const;
