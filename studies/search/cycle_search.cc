@@ -137,7 +137,7 @@ SceneFile scene_of_cycle(const PreparedScene& given, const CycleWaveforms& wavef
   const std::vector<std::string> names = given.drive_names();
   DriveWaveforms tables;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (names[k] == dispersion_drive) continue;  // the dispersion force is a drive without a voltage
+    if (names[k] == dispersion_drive) continue;  // the dispersion force counts as a drive, but has no voltage
     Table table;
     const double tolerance = line_tolerance * std::max(signals[k].peak(), 1e-9);
     for (const auto& [time, voltage] : polyline(signals[k], times.period, tolerance, 0)) {

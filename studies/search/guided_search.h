@@ -1,6 +1,6 @@
-// A search in two stages. The first stage spends two thirds of the budget on minimising a guide cost, which leads to the right
-// minima. The second stage minimises the target cost, from the best points of the first stage. The log shows both stages as one
-// search by the target cost. There is only one stage if both costs are the same.
+// A search in two stages. The first stage spends two thirds of the budget on minimising a guide cost, that of bounce, which
+// leads to bounce-free closings. The second stage minimises the target cost, from the best points of the first stage. The log
+// shows both stages as one search by the target cost. There is only one stage if both costs are the same.
 #pragma once
 
 #include <functional>

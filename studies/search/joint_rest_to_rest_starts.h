@@ -14,8 +14,9 @@
 
 namespace softland {
 
-/// Returns waveforms for each share of the ranges and each duration of the pull after contact, as far as a swing exists. None
-/// for a single electrode, whose waveform families have such starts themselves, and none if the gas film is compressible.
+/// Returns one waveform per drive for every share of the voltage ranges and every duration of the pull after contact for which
+/// a single swing to the contact exists. None for a single electrode, whose waveform families have such starts themselves, and
+/// none if the gas film is compressible.
 [[nodiscard]] std::vector<DriveWaveforms> joint_rest_to_rest_starts(const PreparedScene& given, const SearchSpace& space);
 
 }  // namespace softland

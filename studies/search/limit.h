@@ -78,7 +78,7 @@ struct LimitLanding {
   LeastTime path = {};
   /// Time from first contact to the pull that keeps the switch closed; the drives stay constant meanwhile [s].
   double catch_delay = 0;
-  double catch_time = 0;                 ///< time from first contact to the hold levels [s]; 0: the closing has no catch
+  double catch_time = 0;                 ///< time from first contact until the drives go to the hold levels [s]; 0: no catch
   PreparedScene scene;                   ///< scene with the waveforms of the closing, read back from its text
   Closing closing;                       ///< closing, simulated over the whole simulated time of the scene
   std::vector<CheckingRun> checks = {};  ///< simulations of the closing with a tighter integrator and with more modes

@@ -65,7 +65,7 @@ class ReleaseSearch {
     const std::vector<std::string> names = given_.drive_names();
     DriveWaveforms waveforms;
     for (std::size_t k = 0; k < names.size(); ++k) {
-      if (names[k] == dispersion_drive) continue;  // the dispersion force is a drive without a voltage
+      if (names[k] == dispersion_drive) continue;  // the dispersion force counts as a drive, but has no voltage
       Table table;
       for (const auto& [time, voltage] : commanded[k]) {
         table.time.push_back(time);

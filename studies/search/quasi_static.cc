@@ -115,8 +115,8 @@ constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;
 // Least standard deviation over devices of the voltage at which contact is made, as a share of this voltage.
 constexpr double least_deviation = 0.005;
 constexpr double nearest_points = 1e-6;  // least distance in time of two corners of a waveform, in periods of the first mode
-// Wait between the end of the second ramp (line) and the rise of the holding electrode, if this rise is a plain step, and if
-// its waveform is searched; in periods of the first mode.
+// Wait between the end of the second ramp (line) and the rise of the holding electrode's voltage, if this rise is a plain step,
+// and if its waveform is searched; in periods of the first mode.
 constexpr double step_after_line = 1.2, holder_after_line = 0.8;
 constexpr double settle = 0.5;  // duration of an edge to the hold level, in periods of the first mode
 // Levels of the holding electrode before contact, as shares of its hold level: least level at contact in a start, and upper

@@ -45,7 +45,8 @@ class QuasiStatic {
               double first_touch);
 
   [[nodiscard]] const StableApproach& approach() const { return approach_; }
-  /// Returns the names of the drives in waveforms(): the carrying drive, then the holder if there is one.
+  /// Returns the names of the drives in waveforms(): the drive that moves the switch to its contact, then the electrode that
+  /// holds the closed switch, if that is another drive.
   [[nodiscard]] std::vector<std::string> drives() const;
   /// Returns the searched parameters; their names begin with the drive: "piezo.rise", "piezo.line_s".
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
@@ -82,10 +83,10 @@ class QuasiStatic {
   std::size_t impulses_;
   double period_ = 0;          // period of the first mode [s]
   bool is_electrode_ = false;  // true if the drive that carries the switch to its contact is an electrode
-  double neutral_ = 0;         // voltage at which the carrying drive exerts no force [V], see Switch::neutral_voltage()
+  double neutral_ = 0;         // voltage without force of the drive that carries the switch [V], see Switch::neutral_voltage()
   // Pairs: square of the holding electrode's level [V^2], and voltage of the carrying drive at which contact is then made [V].
   std::vector<std::pair<double, double>> reaches_;
-  // Hold level and level before t = 0, of the carrying drive and of the holding electrode [V].
+  // Hold level and level before t = 0 [V]: of the drive that carries the switch to its contact, and of the holding electrode.
   double hold_ = 0, before_ = 0, holder_hold_ = 0, holder_before_ = 0;
   DriverLimits limits_, holder_limits_;
   std::vector<Variable> variables_;

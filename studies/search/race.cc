@@ -177,8 +177,8 @@ class Race {
   // Returns the cost by which searches are ranked: by the share of bounce-free devices, or by the tail of the cost.
   static double Contender::*rank_by(bool share) { return share ? &Contender::share : &Contender::tail; }
 
-  // Returns the best search of every waveform family by the cost that rank_by() gives, and the best of the others by the other
-  // cost.
+  // Returns the best search of every waveform family, ranked as by rank_by(): by the tail of the cost or by the bounce-free
+  // share; and, of all other searches, the best one by the other of these two measures.
   [[nodiscard]] std::vector<Contender> survivors(std::vector<Contender> contenders) const {
     std::ranges::stable_sort(contenders, {}, rank_by(many_));
     std::vector<Contender> kept, others;

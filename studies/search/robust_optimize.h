@@ -72,8 +72,8 @@ struct SearchedParameters {
   FamilyColumns columns;
   double significant_rebound = 0;  ///< height from which on a rebound is significant [m]
 };
-/// Returns the parameters of optimize(), or of robust_optimize() if `over_devices`. Throws the exceptions that optimize() or
-/// robust_optimize() would throw before the search.
+/// Returns the parameters that optimize() would vary, or robust_optimize() if `over_devices`. Throws the exceptions that
+/// optimize() or robust_optimize() would throw before the search.
 [[nodiscard]] SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOptions& options, bool over_devices,
                                                      const Progress& progress);
 

@@ -21,14 +21,14 @@ namespace {
 constexpr std::size_t scouted_on = 16, ranked_on = 64;
 constexpr std::size_t kept_of_scouted = 24;  // best candidates on `scouted_on` devices, by each measure
 constexpr std::size_t most_of_ranked = 2;    // best candidates on `ranked_on` devices, by each measure
-constexpr std::size_t most_judged = 3;       // most candidates that are tried on fresh devices
+constexpr std::size_t most_judged = 3;       // largest number of candidates tried on fresh devices
 constexpr double end_of_drawing = 0.3;       // end of the search on the nominal device, as a share of a time budget
 
 constexpr const char *fast_row = "fast", *soft_row = "soft";
 // Largest time until a steady contact under the waveforms "fast", "default" and "soft" that are offered to the user, as a
 // multiple of that under the plain step.
 constexpr double fast_within = 0.5, usual_within = 1, soft_within = 2;
-constexpr double by_chance = 1.02;  // tolerance of the three limits above: fresh devices give other times
+constexpr double by_chance = 1.02;  // tolerance of fast_within, usual_within and soft_within: times differ on fresh devices
 constexpr double fewer_bounce_free = 0.05;
 
 class RobustSearchStudy {

@@ -107,8 +107,8 @@ OptimizeOptions options_of(const SearchRequest& request, const SceneFile& scene,
   options.counts_work = !request.budget;
   if (request.robust == nominal_alone) options.conditions = conditions_of(request, conditioned_figures);
   if (request.budget) read_budget(*request.budget, options);
-  // A divided budget compares results by budget. It needs a number of evaluations that the user gave, and is meant for one
-  // search on the nominal device by "auto".
+  // With half the budget first (begins_with_half), results at several budgets can be compared. This needs a number of
+  // evaluations from the user, and is meant for one search on the nominal device by "auto".
   const bool has_one_seed = !request.seeds || *request.seeds == "1";
   options.begins_with_half = request.robust == nominal_alone && request.budget && has_one_seed && request.optimizer == "auto";
   return options;

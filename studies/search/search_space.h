@@ -126,8 +126,8 @@ class SearchSpace {
   [[nodiscard]] DriveWaveforms searched(const DriveWaveforms& waveforms) const;
   /// Returns the quasi-static approach, if the searched family is quasi-static; otherwise null.
   [[nodiscard]] const QuasiStatic* quasi_static() const { return joint_ ? &*joint_ : nullptr; }
-  /// Returns the space of the quasi-static approach, with bounds about its closed form for a steady contact force from `steady`
-  /// on [s].
+  /// Returns the space of the quasi-static approach with bounds about its closed-form waveforms, under which devices carry a
+  /// steady contact force from `steady` on [s].
   [[nodiscard]] SearchSpace paced(double steady) const;
 
  private:

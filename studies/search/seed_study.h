@@ -35,7 +35,7 @@ class SeedStudy {
     long evaluations = 0;    ///< number of evaluations of all seeds in this run of the program
     double best_cost = Metrics::unset, step_cost = Metrics::unset;
   };
-  /// Callbacks of a study, which may be called from any thread, one call at a time. Either may be null.
+  /// Callbacks of a study, which may be called from any thread, one call at a time. Either callback may be null.
   struct Listener {
     std::function<void(const State&)> progress = {};
     /// Function that receives the scene with the best waveform of all seeds.

@@ -1,6 +1,7 @@
 // Verifies the candidate waveforms of a search by simulations over the scene's whole simulated time. The result must also be
 // bounce-free with a tighter integrator and with more modes. A bounce-free plain step is a candidate, too, so that no result
-// closes harder than the plain step. Of the candidates that pass, the result is the one whose worst closing is best.
+// closes harder than the plain step. Of the candidates that pass, the result is the one with the best worst closing over
+// several numbers of modes.
 #pragma once
 
 #include <map>
