@@ -19,8 +19,8 @@ using Eigen::VectorXd;
 
 constexpr Index stages = 3;
 
-// The nodes of a piece of the mesh, scaled to [0, 1]: its beginning and its three Radau points. `slopes` are the derivatives,
-// at the Radau points, of the Lagrange polynomials, each of which is 1 at one node and 0 at the others.
+// The nodes of a piece of the mesh, scaled to [0, 1]: its beginning and its three Radau points. `slopes` are the derivatives at
+// the Radau points of the Lagrange polynomials through the nodes.
 struct Radau {
   std::array<double, stages + 1> points = {0, (4 - std::sqrt(6.0)) / 10, (4 + std::sqrt(6.0)) / 10, 1};
   Eigen::Matrix<double, stages, stages + 1> slopes;

@@ -174,8 +174,8 @@ DevicesRow RobustSearch::row_of(const char* name, const DriveWaveforms& waveform
 }
 
 // Computes the performance on the fresh devices (new to the search) for several measurement errors of the dynamic pull-in
-// voltage Vdp: the best of the calibrated `waveforms` and of `in_volts`, the uncalibrated waveforms, which the error does not
-// affect.
+// voltage Vdp. Each result is the best of the calibrated `waveforms` and of the uncalibrated ones, `in_volts`, which the error
+// does not affect.
 std::vector<CalibrationError> RobustSearch::judged_by_error(const std::vector<DriveWaveforms>& waveforms,
                                                             const DriveWaveforms& in_volts) {
   std::vector<CalibrationError> judged;

@@ -37,7 +37,7 @@ constexpr double softness = 0.2;
 // Relative tolerance of the integrator for comparing catches, pulls after first contact that keep the switch closed.
 constexpr double catch_tolerance = 1e-6;
 constexpr int refinements = 3;  // halvings of the controls' time intervals that are permitted
-constexpr int most_meshes = 3;  // number of meshes of the optimal control problem, each with half the width of its predecessor
+constexpr int most_meshes = 3;  // number of meshes of the optimal control problem, each with pieces half as long as before
 
 // Permitted distances of the modal coordinates at first contact from the closed equilibrium, in contact gaps. The optimal
 // control problem is solved for each, starting from the solution before.

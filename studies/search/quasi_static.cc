@@ -109,7 +109,7 @@ std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& pr
 }
 
 // Starts of a search: the first ramp (rise) ends below the voltage at which the nominal design makes contact, by slow_before if
-// the shaper has more than two impulses, else by fast_before; the second ramp (line) ends above this voltage. Unit: standard
+// the shaper has more than two impulses, else by fast_before. The second ramp (line) ends above this voltage. Unit: standard
 // deviation of this voltage over devices.
 constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;
 // Least standard deviation over devices of the voltage at which contact is made, as a share of this voltage.

@@ -72,8 +72,8 @@ struct DevicesRow {
   /// Returns true if this calibrated row is so much better than `uncalibrated` that measuring every device is worthwhile.
   [[nodiscard]] bool is_worth_measuring(const DevicesRow& uncalibrated) const;
 };
-/// A further waveform is offered to the user only if its impact velocity, or its time, is below this share of the best
-/// waveform's.
+/// A further waveform is offered to the user only if its impact velocity, or its time until a steady contact, is below this
+/// share of the default waveform's.
 inline constexpr double worth_choosing = 0.9;
 
 /// True if row `a` is better than row `b`: it has more bounce-free devices, or, if both have fewer than half, softer impacts.

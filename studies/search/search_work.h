@@ -34,7 +34,8 @@ inline constexpr double usual_lanes = 8;
 /// time of a quasi-static closing relative to a quick one.
 inline constexpr double device_share = 0.8, slow_approach = 3;
 
-/// Returns the number of closings n of a budget of `closings` when a closing has the work `counted`; at least 1.
+/// Returns the number of closings that a default budget of `closings` is reduced to if each takes the work `counted`, more than
+/// the reference `usual` [right-hand sides]; at least 1.
 [[nodiscard]] long within_work(long closings, double counted, double usual);
 
 /// Reduces a default budget of the search on the nominal device if the closings of the scene are slow, and reports the estimated
