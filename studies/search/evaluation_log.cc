@@ -1,9 +1,20 @@
 #include "studies/search/evaluation_log.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "studies/search/search_setting.h"
+
 namespace softland {
+namespace {
+
+constexpr std::size_t most_candidates = 8;  // largest number of candidate waveforms that are verified
+// Numbers of evaluations that EvaluationLog::sampled_by_rank() returns: of the best, of those evenly spaced by rank, and of the
+// best of every problem.
+constexpr std::size_t kept_best = 100, kept_of_ladder = 150, kept_of_problem = 15;
+
+}  // namespace
 
 std::vector<Evaluation> improvements_of(const std::map<long, Evaluation>& evaluations) {
   std::vector<Evaluation> improvements;
@@ -11,6 +22,15 @@ std::vector<Evaluation> improvements_of(const std::map<long, Evaluation>& evalua
     if (std::isfinite(e.value) && (improvements.empty() || e.value < improvements.back().value)) improvements.push_back(e);
   }
   return improvements;
+}
+
+std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) {
+  std::vector<Evaluation> chosen;
+  for (auto e = improvements.rbegin(); e != improvements.rend() && chosen.size() < most_candidates; ++e) {
+    if (!(e->value < never_touched)) break;
+    if (chosen.empty() || e->value > distinct * chosen.back().value) chosen.push_back(*e);
+  }
+  return chosen;
 }
 
 EvaluationLog::EvaluationLog(const OptimizeOptions& options, const SearchBudget& budget, double step_cost, SceneOf scene)
@@ -55,6 +75,26 @@ std::map<long, Evaluation> EvaluationLog::evaluations(std::size_t problem) const
     if (e.problem == problem) own.emplace(index, e);
   }
   return own;
+}
+
+std::vector<Evaluation> EvaluationLog::sampled_by_rank(std::size_t problems) const {
+  std::vector<Evaluation> all;
+  for (std::size_t k = 0; k < problems; ++k) {
+    for (const auto& [index, e] : evaluations(k)) {
+      if (e.value < never_touched) all.push_back(e);
+    }
+  }
+  std::ranges::stable_sort(all, {}, &Evaluation::value);
+  std::vector<Evaluation> kept;
+  std::vector<std::size_t> of_problem(problems, 0);
+  const std::size_t rung = std::max<std::size_t>(1, all.size() / kept_of_ladder);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::size_t& count = of_problem[all[i].problem];
+    if (i >= kept_best && i % rung != 0 && count >= kept_of_problem) continue;
+    ++count;
+    kept.push_back(all[i]);
+  }
+  return kept;
 }
 
 }  // namespace softland

@@ -16,6 +16,12 @@ namespace softland {
 /// Returns the feasible evaluations whose cost is below that of every earlier evaluation, in the order of their index.
 [[nodiscard]] std::vector<Evaluation> improvements_of(const std::map<long, Evaluation>& evaluations);
 
+/// Least ratio between the costs of two candidate waveforms that are both verified.
+inline constexpr double distinct = 1.01;
+/// Returns the candidate waveforms that a search verifies, at most 8: from `improvements`, the best first, each with a cost that
+/// is distinctly above that of the one before, since similar waveforms would fail for the same reason.
+[[nodiscard]] std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements);
+
 /// Collects the evaluations of a search. Several threads may call the log; callbacks are called one at a time.
 class EvaluationLog {
  public:
@@ -38,6 +44,9 @@ class EvaluationLog {
   [[nodiscard]] const std::map<long, Evaluation>& evaluations() const { return evaluations_; }
   /// Returns the evaluations of the waveform family with the number `problem`, by their index.
   [[nodiscard]] std::map<long, Evaluation> evaluations(std::size_t problem) const;
+  /// Returns some of the evaluations that touch, the best first: the 100 best, 150 evenly spaced by rank, and the best 15 of each
+  /// of the first `problems` values of Evaluation::problem.
+  [[nodiscard]] std::vector<Evaluation> sampled_by_rank(std::size_t problems) const;
   /// Returns one more than the largest index of the evaluations; 0 without evaluations.
   [[nodiscard]] long next_index() const { return evaluations_.empty() ? 0 : evaluations_.rbegin()->first + 1; }
 

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <iterator>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "base/random.h"
@@ -18,12 +21,12 @@
 #include "studies/search/search_budget.h"
 #include "studies/search/search_setting.h"
 #include "studies/search/search_work.h"
+#include "studies/search/tournament.h"
 #include "studies/search/verification.h"
 
 namespace softland {
 namespace {
 
-constexpr std::size_t most_candidates = 8;  // largest number of candidates that are verified at first
 // For a target whose cost differs from that of bounce: number of candidates of each waveform family that are verified in
 // addition, those most likely to close without a bounce.
 constexpr std::size_t most_sure = 4;
@@ -38,7 +41,6 @@ constexpr double least_for_landings = 60;
 constexpr double end_of_search = 0.6, end_of_gentle = 0.75, end_of_worst = 0.85;
 // Impact velocity of starting waveforms that reach the contact at rest, as a share of that under the plain step.
 constexpr double soft_touch = 0.01;
-constexpr double distinct = 1.01;  // costs of two verified candidates differ at least by this factor
 // Number of waveform families that are searched on by the worst cost over the scene's number of modes and more modes.
 constexpr std::size_t families_sifted = 2;
 // The search by the worst cost over several numbers of modes gets this part of the evaluations: one in 50.
@@ -46,21 +48,6 @@ constexpr long evaluations_of_the_worst = 50;
 constexpr long shortest_half = 100;  // fewest evaluations of each half of a divided budget
 // Share of the budget that all waveform families get in equal parts first; the best family then gets the rest.
 constexpr double opening = 0.6;
-
-// Numbers of candidate waveforms that are kept in OptimizeResult::tried: of the best, of those evenly spaced by rank, and of
-// the best of every waveform family.
-constexpr std::size_t kept_best = 100, kept_of_ladder = 150, kept_of_family = 15;
-
-// Returns the evaluations that improved the best cost of a search, the best first. Each cost is distinctly above the one
-// before, since similar waveforms would fail for the same reason.
-std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) {
-  std::vector<Evaluation> chosen;
-  for (auto e = improvements.rbegin(); e != improvements.rend() && chosen.size() < most_candidates; ++e) {
-    if (!(e->value < never_touched)) break;
-    if (chosen.empty() || e->value > distinct * chosen.back().value) chosen.push_back(*e);
-  }
-  return chosen;
-}
 
 // The search on the nominal device in all its waveform families, with its log of evaluations.
 class RunningSearch {
@@ -189,25 +176,10 @@ class RunningSearch {
     return all;
   }
 
-  // Returns some of the candidate waveforms that make contact: the best of all, candidates evenly spaced by rank, and the best
-  // of every waveform family.
   [[nodiscard]] std::vector<TriedWaveform> tried() const {
-    std::vector<Evaluation> all;
-    for (std::size_t k = 0; k < families_.size(); ++k) {
-      for (const auto& [index, e] : log_.evaluations(k)) {
-        if (e.value < never_touched) all.push_back(e);
-      }
-    }
-    std::ranges::stable_sort(all, {}, &Evaluation::value);
     std::vector<TriedWaveform> kept;
-    std::vector<std::size_t> of_family(families_.size(), 0);
-    const std::size_t rung = std::max<std::size_t>(1, all.size() / kept_of_ladder);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const std::size_t k = all[i].problem;
-      if (i >= kept_best && i % rung != 0 && of_family[k] >= kept_of_family) continue;
-      ++of_family[k];
-      kept.push_back({.family = names_[k], .cost = all[i].value, .waveforms = families_[k].waveforms(all[i])});
-    }
+    for (const Evaluation& e : log_.sampled_by_rank(families_.size()))
+      kept.push_back({.family = names_[e.problem], .cost = e.value, .waveforms = families_[e.problem].waveforms(e)});
     return kept;
   }
 
@@ -270,20 +242,37 @@ class RunningSearch {
             .parameters = families_[k].named(e)};
   }
 
-  // Searches each waveform family with a share of the budget, and the best family with the rest. By the cost of bounce, each
-  // family begins at the results of earlier families. By a target's own cost, only the best family does so, since otherwise all
-  // families would end in one minimum. Returns false if the search was interrupted or failed.
+  // Runs a tournament of the waveform families. In the first round every family has an equal share of the budget, and in the
+  // second round the best family has the rest. By the cost of bounce, each family of the first round begins at the results of
+  // earlier families. By a target's own cost, only the best family does so in the second round, since otherwise all families
+  // would end in one minimum. Returns false if the search was interrupted or failed, or its time is over.
   bool run_families(long all_evaluations, double all_seconds, Costs costs) {
     const SearchBudget all(budget_, all_evaluations, all_seconds);
-    const double share = opening / static_cast<double>(families_.size());
-    const auto evaluations = static_cast<long>(share * static_cast<double>(all_evaluations));
-    for (std::size_t k = 0; evaluations > 0 && k < families_.size(); ++k) {
-      if (costs != Costs::target) begin_where_others_were(k, costs);
-      if (!go_on(k, evaluations, share * all_seconds, 0, costs, false)) return false;
-    }
-    const long rest = all_evaluations - static_cast<long>(families_.size()) * evaluations;
-    if (costs == Costs::target) begin_where_others_were(leader(costs), costs);
-    return go_on(leader(costs), rest, all.seconds_left(), options_.more_evaluations, costs, true);
+    const std::size_t count = families_.size();
+    const auto equal = static_cast<long>(opening / static_cast<double>(count) * static_cast<double>(all_evaluations));
+    constexpr std::array both{Round{}, Round{.contenders = 1}};
+    const std::span<const Round> rounds = std::span(both).subspan(equal > 0 ? 0 : 1);
+    bool may_go_on = true;
+    const Tournament<std::size_t> tournament{
+        .budget = budget_,
+        .share = [&](const Round& round, std::size_t) -> RoundShare {
+          if (round.contenders == 1) return {all_evaluations - static_cast<long>(count) * equal, all.seconds_left()};
+          return {equal, opening * all_seconds};
+        },
+        .search =
+            [&](std::size_t& family, Turn turn, const Chain& chain, const SearchBudget& part) {
+              if (!may_go_on) return;
+              const bool is_last = rounds[turn.round].contenders == 1;
+              if ((costs == Costs::target) == is_last) begin_where_others_were(family, costs);
+              const double seconds = part.seconds_left() / static_cast<double>(is_last ? 1 : count - turn.number);
+              may_go_on = go_on(family, chain.closings, seconds, is_last ? options_.more_evaluations : 0, costs, is_last);
+            },
+        .select = [&](const std::vector<std::size_t>&,
+                      std::size_t) { return may_go_on ? std::vector{leader(costs)} : std::vector<std::size_t>{}; }};
+    std::vector<std::size_t> contenders(count);
+    std::iota(contenders.begin(), contenders.end(), 0);
+    tournament.run(rounds, rounds.size() == both.size() ? contenders : std::vector{leader(costs)});
+    return may_go_on && !budget_.over();
   }
 
   // Adds waveforms of the user as a candidate, and as a start of every waveform family. `prepared()` returns the scene with

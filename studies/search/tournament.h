@@ -1,15 +1,16 @@
-// A tournament of searches over varied devices. In each round searches run in parallel, with more devices and smaller steps
-// than in the round before, and the best searches (contenders) continue in the next round.
+// A tournament of searches (contenders) over rounds: the best searches of a round continue in the next one. Four searches are
+// tournaments, and differ in their contenders and in the measure of comparison:
 //
-// A contender is a point of a search space, from which CMA-ES searches in a round (device_chain.h). The contenders begin at the
-// best of many points: the starts of the waveform family, those nearest to given waveforms, and points of the whole search
-// space. Three searches use tournaments, and differ in their contenders and in the measure of comparison:
-//
+//   optimize.h         waveform families on the nominal device, one after another, compared by their cost
 //   race.h             waveform families by two measures, compared on the devices of the next round
 //   robust_optimize.h  distant points of one family, compared by their cost on all devices
 //   paced_search.h     one contender, which goes on in every round
 //
-// Contenders of a round do not depend on each other, so that the result depends on the seed and the number of closings only.
+// Over varied devices, searches of a round run in parallel, with more devices and smaller steps than in the round before. There
+// a contender is a point of a search space, from which CMA-ES searches in a round (device_chain.h). The contenders begin at the
+// best of many points: the starts of the waveform family, those nearest to given waveforms, and points of the whole search
+// space. Contenders of a round do not depend on each other, so that the result depends on the seed and the number of closings
+// only.
 //
 // Source for the halving: K. Jamieson & A. Talwalkar, "Non-stochastic best arm identification and hyperparameter optimization",
 // AISTATS 2016.
