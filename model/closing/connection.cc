@@ -61,8 +61,8 @@ std::size_t ConnectionCourse::decides(double time, std::size_t present) const {
 void ConnectionCourse::hand_over() {
   const Followed& any = followed_[deciding_];
   if (any.fresh.empty()) return;
-  // Pass on the first point of the run, and jumps of velocity or acceleration, at which every contact has two points of equal
-  // time.
+  // At the first point of the run, and where velocity or acceleration jumps, every contact has a new point at the same time.
+  // Pass on these points at once: there is no motion to interpolate before them.
   while (!any.fresh.empty() && (!any.last || any.fresh.front().time == any.last->time)) {
     for (Followed& c : followed_) {
       if (!c.connects()) continue;
@@ -155,7 +155,8 @@ std::optional<Touch> ConnectionTouches::finish() {
 
 ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts) {
   if (contacts.size() == 1) return contacts.front();
-  // `later` and `less` return the later, or the smaller, of two numbers; NaN when one of them is NaN.
+  // A connection of all contacts settles with the last of them, and its least force is that of the weakest. Each result is NaN
+  // if that of one contact is NaN (unknown).
   const auto later = [](double a, double b) { return std::isnan(a) || a > b ? a : b; };
   const auto less = [](double a, double b) { return std::isnan(a) || a < b ? a : b; };
   std::optional<ForceOutcome> all;

@@ -1,11 +1,12 @@
 // Connection: the electrical path through several contacts of a switch, which an observer receives like a single contact.
 //
-// The connection is closed while all of its contacts are closed, or while any of them is (Device::connection). Its separation
-// is the largest separation of its contacts, or the smallest; its position is the distance of the first contact from its plane
-// at rest less this separation. Between two knots (points of the simulated motion) of any contact, the separation is that of
-// the contact with the largest (or smallest) separation at both ends. Where this contact changes, a knot is added at the time
-// at which both contacts have the same separation. The force of the connection is the least force of its contacts, or the
-// largest. A touch (interval in contact) of the connection has the largest force and impact velocity of the touches of its
+// The connection is closed while all of its contacts are closed, or while any of them is (Device::connection). The separation
+// of a contact is the distance of its contact point from the contact plane, negative in contact. The separation of the
+// connection is the largest (or smallest) separation of its contacts; its position is the distance of the first contact from
+// its plane at rest less this separation. Between two knots (points of the simulated motion), one contact decides: the one with
+// the largest (or smallest) separation at both knots. If another contact decides at the second knot, a knot is added at the
+// time at which both contacts have the same separation. The force of the connection is the least (or largest) force of its
+// contacts. A touch (interval in contact) of the connection has the largest force and impact velocity of the touches of its
 // contacts, and the sum of their energies.
 #pragma once
 
@@ -26,7 +27,7 @@ class ConnectionTouches {
   /// Adds a touch (interval in contact) of one contact of the connection.
   void take(const Touch& touch);
   /// Begins a touch of the connection: the connection closes at this time [s] with this impact velocity [m/s]. Returns the
-  /// previous touch of the connection, if any.
+  /// previous touch of the connection, which is now complete; none at the first touch.
   [[nodiscard]] std::optional<Touch> close(double time, double speed);
   /// Ends the current touch of the connection, which opens at this time [s].
   void open(double time) { touch_->end = time; }
@@ -48,7 +49,7 @@ struct ForceOutcome {
   double steady_force_time = std::numeric_limits<double>::quiet_NaN();
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
 };
-/// Computes the force figures of the connection from those of all contacts of the device, in the order of the device.
+/// Computes settling time and least force of the connection from those of the contacts, given in the order of Device::contacts.
 [[nodiscard]] ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts);
 
 class ConnectionCourse {
@@ -94,7 +95,8 @@ class ConnectionCourse {
   };
 
   /// Returns the contact whose separation is that of the connection at this time: the contact with the largest (or smallest)
-  /// separation. Of several contacts with the same separation, `present`, the result until now, is preferred.
+  /// separation. `present` is the contact that has decided until now; it still decides when another contact has the same
+  /// separation.
   [[nodiscard]] std::size_t decides(double time, std::size_t present) const;
   void follow_to(double time);
   void tell(double time);

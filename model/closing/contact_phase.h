@@ -31,7 +31,7 @@ struct Edge {
   double level = 0;  ///< position of the contact point at which this branch of the contact law ends [m]
   double side = 0;   ///< 1: this branch of the contact law acts beyond the level, towards the contact; -1: before the level
   Phase next = Phase::flight;
-  std::size_t zone = 0;  ///< number of kinks of the contact law below the interferences of the next phase
+  std::size_t zone = 0;  ///< in phase `next`: number of the law's kinks at smaller interferences
 };
 
 class ContactPhase {
@@ -42,7 +42,8 @@ class ContactPhase {
   [[nodiscard]] Phase phase() const { return phase_; }
   /// Returns true when the contact point is at or below the contact plane.
   [[nodiscard]] bool in_contact() const { return phase_ != Phase::flight && phase_ != Phase::near; }
-  /// Returns what the force law needs to know in the current phase: whether the law acts, and the past of a law with memory.
+  /// Returns the state of the contact from which the contact law computes its force: whether the law acts now, and for a law
+  /// with memory its branch and the residual deformation.
   [[nodiscard]] const ContactState& law() const { return law_; }
   [[nodiscard]] std::span<const Edge> edges() const { return {edges_.data(), edge_count_}; }
   /// Returns the phase (branch of the contact law) just above the contact plane.
@@ -54,7 +55,7 @@ class ContactPhase {
   [[nodiscard]] ContactState law_at(double position) const {
     return acts_along_pad_ || (has_contact_ && position > plane_ - reach_);
   }
-  /// Returns the energy lost to residual deformation (dents) so far, with the contact point at this position [J].
+  /// Returns the energy that residual deformation (dents) has dissipated so far, with the contact point at this position [J].
   [[nodiscard]] double lost(double position) const;
 
   void enter(Phase phase, std::size_t zone = 0);
@@ -77,7 +78,7 @@ class ContactPhase {
   std::size_t edge_count_ = 0;
   double deepest_ = 0;  // deepest interference so far of a contact law with memory [m]
   Dent dent_;           // residual deformation (dent) that a contact law with memory has left
-  double healed_ = 0;   // energy lost to dents that have since vanished [J]
+  double healed_ = 0;   // energy dissipated by dents that have since vanished [J]
 };
 
 /// The phases (branches of the contact law that act) of all contacts of a switch; for a switch without contact, the phase of
@@ -95,8 +96,7 @@ class ContactPhases {
   [[nodiscard]] ContactPhase& operator[](std::size_t c) { return phases_[c]; }
   [[nodiscard]] const ContactPhase& operator[](std::size_t c) const { return phases_[c]; }
   [[nodiscard]] const ContactPhase& first() const { return phases_.front(); }
-  /// Returns for all contact laws whether they act in their current phases, with the past of laws with memory; valid until the
-  /// next call.
+  /// Returns ContactPhase::law() of every contact, for the forces of the switch; valid until the next call.
   [[nodiscard]] ContactStates states() {
     for (std::size_t c = 1; c < size(); ++c) further_[c - 1] = phases_[c].law();
     return {phases_.front().law(), further_};

@@ -1,5 +1,6 @@
-// The drive voltages of a closing, interval by interval. Between two breakpoints of the drives (an interval or stretch) every
-// drive is on one smooth piece of its signal.
+// The drive voltages of a closing, interval by interval. A breakpoint is a time at which any drive voltage jumps or is not
+// smooth. In the interval (stretch) between two breakpoints, every voltage is one smooth piece of its signal, and the
+// integrator needs no restart.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +21,7 @@ class DriveCourse {
   /// Returns the voltages of all drives before t = 0.
   [[nodiscard]] std::vector<double> before() const { return values_before(signals_); }
   /// Returns the times in [0, duration] that bound the intervals between breakpoints of the drives, in order. The time `also`
-  /// [s] bounds an interval, too, if it is within [0, duration].
+  /// [s], such as that of the command to open, bounds an interval as well if it is within [0, duration].
   [[nodiscard]] std::vector<double> stretches(double duration, double also = std::numeric_limits<double>::infinity()) const {
     std::vector<double> stops{0, duration};
     if (also > 0 && also < duration) stops.push_back(also);

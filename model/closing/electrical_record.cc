@@ -25,7 +25,8 @@ ElectricalRecord::Instant ElectricalRecord::instant(std::size_t c, const Contact
     const double length = contact.to.time - contact.from.time, share = length > 0 ? (time - contact.from.time) / length : 1;
     now.force = std::lerp(contact.from.contact_force, contact.to.contact_force, share);
   } else {
-    // Within a step a contact law without memory may start or stop acting, which depends on the position alone.
+    // A contact may close or open within the step. The position alone says whether a law without memory acts; a law with memory
+    // keeps its state, since the integrator restarts where the state changes.
     const ContactState state = has_memory(law) ? contact.law : ContactState(now.interference > -model_.contact_reach(c));
     if (state.active) now.force = contact_force(law, now.interference, state, tip.velocity(time));
   }
@@ -101,12 +102,13 @@ void ElectricalRecord::take_rest(double begin, double end, const std::function<d
   follow(followed_.front(), at, begin, end);
 }
 
-// `at` is the margin to electrical opening, positive while closed. When it has the same sign at both ends of the interval, but
-// its slopes there point towards zero, search for its extremum: the sign may change twice.
+// Records the changes of the electrical state in an interval. `at` returns the margin to electrical opening at a time, positive
+// while closed. If it has the same sign at both ends of the interval, but its slopes there point towards zero, its extremum is
+// searched: the sign may change twice.
 template <class Margin>
 void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin, double end) const {
-  // Share of the interval over which the slope at an end is measured. Closer to the end, rounding would hide the change of a
-  // force that grows with a high power of the interference.
+  // Share of the interval over which the slope of the margin at an end is measured. Closer to the end, rounding would hide the
+  // change of a force that grows with a high power of the interference.
   constexpr double beside = 1e-3;
   constexpr int bits = 30;
   const double from = at(begin), to = at(end);
@@ -158,7 +160,7 @@ void ElectricalRecord::tell(const Followed& followed, double time) const {
 }
 
 bool ElectricalRecord::counts(const Followed& followed, double until) const {
-  constexpr double rounding = 1e-12;  // relative rounding error of the time at which one step ends and the next begins
+  constexpr double rounding = 1e-12;  // shorter openings, relative to the time, are rounding errors between two steps
   return until - followed.opened_at > std::max(closing_.shortest_opening(), rounding * until);
 }
 

@@ -4,9 +4,9 @@
 // The force of the connection is the least force of its contacts, or with Connection::any the largest. Its resistance is that
 // of the contacts in series, or in parallel (model/contact/resistance.h). The margin is the distance of force and resistance
 // from their bounds, positive while the connection is electrically closed, and continuous within a step. Its changes of sign
-// are found by bracketing. It is evaluated after every piece of the step, where a contact point turns back, and at an extremum
-// in between when the slopes at both ends indicate an extremum. The force of a contact that acts along a pad is taken as linear
-// between these times.
+// are found by bracketing. The margin is evaluated at the ends of the quintic pieces of which an integration step consists, and
+// where a contact point turns back. Between two of these times it is also evaluated at an extremum, if its slopes at both
+// indicate one. The force of a contact that acts along a pad is taken as linear between these times.
 //
 // An opening counts when it is longer than ElectricalClosing::after; a shorter opening is ignored.
 #pragma once
@@ -26,8 +26,9 @@
 
 namespace softland {
 
-/// A contact in an integration step: its motion, its points at the start of the step's last piece and at the end of the step,
-/// and the state of its contact law. `is_in_contact` is true when the contact point is at or below the contact plane.
+/// A contact in an integration step: its motion in the step, its point of the motion at the start of the step's last quintic
+/// piece and at the end of the step, and the state of its contact law. `is_in_contact` is true when the contact point is at or
+/// below the contact plane.
 struct ContactInStep {
   StepMotion& motion;
   const TrajectoryPoint& from;

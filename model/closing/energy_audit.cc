@@ -39,8 +39,8 @@ void EnergyAudit::enter_stretch(const Knot& here, bool first) {
     if (before == after) continue;
     const double potential = model_.law_potential(k, here.state.data(), equations_.workspace());
     if (holds_charge(k)) {
-      // At a voltage jump the source delivers the integral of V dQ = C V dV: a fixed charge on the dielectric does not change
-      // dQ.
+      // At a voltage jump the source delivers the integral of V dQ with dQ = C dV, which is C/2 times the change of V^2. A
+      // fixed charge on the dielectric shifts Q by a constant and does not matter.
       source_work_ -= (after * after - before * before) * potential;
     } else {
       source_work_ += (model_.strength(k, after) - model_.strength(k, before)) * potential;
@@ -95,8 +95,9 @@ void EnergyAudit::step(const Knot& here, const Knot& next, double dissipation_at
 }
 
 // Returns the mean dissipated power over a step, at the end of which the power is `at_end`. Within a step the phase of a mode
-// may advance by two radians, and the phase of the dissipated power by four. Simpson's rule is used when the modes do not
-// describe the motion within the step, as with a compressible film.
+// may advance by two radians, and the phase of the dissipated power by four: too much for Simpson's rule in a careful audit,
+// which uses Lobatto's rule. Simpson's rule remains when the free motion of the modes does not describe the motion within the
+// step, as with a compressible film.
 double EnergyAudit::mean_dissipation(double at_end, StepMotion& motion, bool implicit) {
   const auto power = [&](const std::vector<double>& state) {
     return equations_.dissipation(state.data()) + contact_dissipation(state.data());
@@ -128,7 +129,8 @@ double EnergyAudit::above_rest(const Knot& here) {
          impacts_ + model_.film_energy(q, equations_.workspace());
 }
 
-// The field of an electrode with charge Q at the voltage V of its source stores its potential at constant voltage plus V Q.
+// Switch::potential() counts the field of an electrode by its potential at constant voltage V, -C (V - V0)^2 / 2. The energy
+// stored in the field is greater by V Q, Q the charge of the electrode; V Q is also part of the work of the sources.
 void EnergyAudit::settle(const Knot& here) {
   const double* q = here.state.data();
   const std::span<const double> values = drives_.values(here.time);

@@ -7,10 +7,10 @@
 // dielectric. The field of the electrode stores C (V - V0)^2/2 + V0 Q.
 //
 // [V Q] is the difference of V Q between the ends of each interval between breakpoints of the drives. The integral of Q dV is
-// computed by Simpson's rule over steps in which the voltage changes. The drive of a dispersion force has no charge: its work
-// has no term [V Q]. Dissipation is integrated by Simpson's rule over each step. When the residual has exceeded 1e-4 of the
-// energy that bends the beam by the contact gap, Lobatto's rule with four points replaces Simpson's rule, with the exact motion
-// of the modes between the points.
+// computed by Simpson's rule over steps in which the voltage changes. A drive that changes the dispersion force of the switch,
+// instead of an electrode's voltage, has no charge: its work has no term [V Q]. Dissipation is integrated by Simpson's rule
+// over each step. When the residual has exceeded 1e-4 of the energy that bends the beam by the contact gap, Lobatto's rule with
+// four points replaces Simpson's rule, with the exact motion of the modes between the points.
 #pragma once
 
 #include "model/closing/contact_phase.h"
@@ -28,12 +28,14 @@ class EnergyAudit {
   EnergyAudit(const Switch& model, DriveCourse& drives, ContactPhases& phases, ClosingEquations& equations, const Knot& start);
 
   /// Moves all drives to the signal pieces that are valid after the time of `here`; `first` is true at the start of the run,
-  /// when the drives have their voltages before t = 0. A voltage jump charges an electrode at fixed deflection, like an
-  /// infinitely steep ramp.
+  /// where the voltages may jump from those before t = 0. The work of a voltage jump is that of charging an electrode at fixed
+  /// deflection, like an infinitely steep ramp.
   void enter_stretch(const Knot& here, bool first);
-  /// Adds an integration step between two states to the energy balance.
+  /// Adds an integration step between two states to the energy balance. `dissipation_at_end` is the power that gas, film and
+  /// modal damping dissipate at `next` [W]; `implicit` is true for a step of an implicit method.
   void step(const Knot& here, const Knot& next, double dissipation_at_end, StepMotion& motion, bool implicit);
-  /// Adds an interval in which the rigid plate rests on its contact while the drives change.
+  /// Adds to the energy balance an interval up to the time `until` [s], in which the rigid plate rests on its contact: only
+  /// changes of the drives do work.
   void rest(const Knot& here, double until);
   /// Adds an impact on a rigid contact: `lost` is the energy lost [J], `dissipation` the dissipated power just after the impact
   /// [W].
@@ -57,7 +59,7 @@ class EnergyAudit {
   [[nodiscard]] double contact_dissipation(const double* state) const;
   /// Returns the energy stored in the contacts on which a contact law acts now [J].
   [[nodiscard]] double stored_in_contacts(const double* q) const;
-  /// Returns the energy lost to residual deformation of the contacts (dents) so far [J].
+  /// Returns the energy that residual deformation of the contacts (dents) has dissipated so far [J].
   [[nodiscard]] double lost_in_contacts(const double* q) const;
   void add_charges(const Knot& here, double sign);
   [[nodiscard]] double mean_dissipation(double at_end, StepMotion& motion, bool implicit);
@@ -68,7 +70,7 @@ class EnergyAudit {
   ClosingEquations& equations_;
   std::size_t modes_;
   double rest_energy_;      // energy of the switch at the start of the run [J]
-  double source_work_ = 0;  // work of the sources, without the term V Q of the electrodes' present charges [J]
+  double source_work_ = 0;  // work of the sources, less the term V Q for the electrodes' charges now [J]
   double dissipated_ = 0;   // energy that gas, film, modal damping and contacts have dissipated [J]
   double dissipation_ = 0;  // dissipated power at the end of the last step [W]
   double impacts_ = 0;      // energy lost in impacts on a rigid contact [J]

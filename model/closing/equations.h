@@ -24,8 +24,8 @@ class ClosingEquations {
   /// of its current phase. The derivatives of the modal coordinates are the velocities and are not part of the result.
   void rates(double t, const double* state, double* result) { rates(t, state, phases_.states(), result); }
   void rates(Knot& knot) { rates(knot.time, knot.state.data(), knot.rates.data()); }
-  /// Returns the smallest gap, far-side contact and dissipation along the beam from the last evaluation of rates(), which must
-  /// have been an evaluation of this `state`, up to rounding.
+  /// Returns smallest gap, dissipated power, and whether the beam has reached an electrode or wall on the far side, all from
+  /// the last evaluation of rates(). That evaluation must have been one of this `state`, up to rounding.
   [[nodiscard]] FieldFigures field(const double* state);
   /// Returns the power that gas, film and modal damping dissipate in any state [W]. The call overwrites the gaps that field()
   /// uses.

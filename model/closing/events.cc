@@ -4,8 +4,8 @@ namespace softland {
 namespace {
 
 // Returns the time in [from, to] at which the contact point first leaves the current branch of the contact law across `edge`,
-// the position at which the branch ends. The motion is monotone between its turning points, so at most one crossing is between
-// two of them.
+// the position at which the branch ends. The motion is monotone between two successive turning points, so it crosses the edge
+// at most once between them.
 std::optional<double> crossing(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const Edge& edge) {
   const double side = edge.side;
   const Quintic::Bounds reached = tip.bounds();
@@ -17,8 +17,8 @@ std::optional<double> crossing(const TipMotion& tip, const TrajectoryPoint& from
     return at < 0;
   };
   const auto found = [&](double outside) {
-    // Just after an event the contact point is on the edge of the new branch of the contact law. When no part of the motion is
-    // inside the new branch, this branch ends at once.
+    // Just after an event the contact point is on the edge of the new branch (depth 0). If the monotone motion from there to
+    // `outside` leaves the branch, the branch ends at once: there is no change of sign to bracket.
     return depth(inside) > 0 ? bracketed_zero(depth, inside, outside) : inside;
   };
   for (const double turn : tip.turns()) {

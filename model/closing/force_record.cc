@@ -26,11 +26,11 @@ bool rises_with_depth(const Switch& model, std::size_t contact) {
 ForceRecord::ForceRecord(const Switch& model, double threshold, std::size_t contact)
     : model_(model), contact_(contact), threshold_(threshold), rises_with_depth_(rises_with_depth(model, contact)) {}
 
-// Records an interval for any contact law. The contact force has an extremum within the interval when it rises from both ends
-// towards the middle, or falls from both ends.
+// Adds an interval to the record, for any contact law. If the contact force rises from both ends of the interval towards the
+// middle, or falls from both ends, the interval is divided at the extremum of the force.
 template <class Force>
 void ForceRecord::follow_path(const Force& force, double begin, double from, double end, double to) {
-  constexpr double beside = 1e-6;  // share of the interval over which the slope at an end is measured
+  constexpr double beside = 1e-6;  // share of the interval for the slope of the force at an end
   constexpr int bits = 30;
   if (rises_with_depth_) return follow(force, begin, from, end, to);
   const double after = force(begin + beside * (end - begin)) - from, before = force(end - beside * (end - begin)) - to;
@@ -45,7 +45,7 @@ void ForceRecord::follow_path(const Force& force, double begin, double from, dou
   follow(force, turn, there, end, to);
 }
 
-// Adds an interval in which the contact force only rises or only falls.
+// Adds an interval in which the contact force only rises or only falls: updates settling time, largest and least force.
 template <class Force>
 void ForceRecord::follow(const Force& force, double begin, double from, double end, double to) {
   has_fallen_ = has_fallen_ || (has_risen_ && to < from);
@@ -61,8 +61,8 @@ void ForceRecord::follow(const Force& force, double begin, double from, double e
   }
 }
 
-// Returns the least contact force after its first maximum. A tiny value, which rounding of the position at which a contact
-// opens may cause, counts as 0.
+// Returns the least contact force after its first maximum. When a contact opens, rounding of its position may leave a tiny
+// force, which counts as 0.
 double ForceRecord::least() const {
   constexpr double rounding = 1e-12;
   const double least = has_fallen_ ? least_ : last_;

@@ -39,7 +39,8 @@ class ForceRecord {
  private:
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-  /// Adds an interval in which the velocity of the contact point keeps its sign.
+  /// Adds an interval between two turning points of the contact point to the record. `from` and `to` are the forces at its ends
+  /// [N].
   template <class Force>
   void follow_path(const Force& force, double begin, double from, double end, double to);
   template <class Force>

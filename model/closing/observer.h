@@ -33,9 +33,9 @@ class ClosingObserver {
   /// Receives a touch (interval in contact) of the contact when the contact has opened. A touch that has not ended at the end
   /// of the run is passed on then; its end is NaN.
   virtual void touch(const Touch&) {}
-  /// Returns the observer that receives motion and touches of contact `number` of a switch with several contacts; null for
-  /// none. This observer itself receives those of the connection (electrical path) that the contacts form. Not called for one
-  /// contact.
+  /// Returns the observer for motion and touches of contact `number` of a switch with several contacts; null when they are not
+  /// needed. The present observer itself receives motion and touches of the connection (electrical path) through the contacts.
+  /// For a switch with one contact this function is not called.
   [[nodiscard]] virtual ClosingObserver* contact(std::size_t /*number*/) { return nullptr; }
   /// Returns true when the observer needs the times at which contacts close and open electrically
   /// (model/closing/electrical_record.h).

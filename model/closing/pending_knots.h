@@ -22,7 +22,8 @@ class PendingKnots {
   void push(const TrajectoryPoint& point) { waiting_.push_back(point); }
   /// Returns the last point of the contact point's motion, whether or not the observer has received it.
   [[nodiscard]] const TrajectoryPoint& last() const { return waiting_.empty() ? handed_over_ : waiting_.back(); }
-  /// Returns the last point of the motion that the observer has not received. The caller may correct its rounding errors.
+  /// Returns the last point of the motion that the observer has not received. The caller may change it: at an event, it puts
+  /// the contact point exactly on the position of the event.
   [[nodiscard]] TrajectoryPoint& last_waiting() { return waiting_.back(); }
   /// Removes the points of the motion that the observer has not received, from the time `from` [s] on; points at or before
   /// `step_begin` [s] remain.

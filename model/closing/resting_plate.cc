@@ -18,7 +18,7 @@ double RestingPlate::load(const Knot& here, double t) {
   return rates_[0] / model_.basis().contact_shape()[0];
 }
 
-// A rigid plate has one mode only, so one coordinate and one velocity.
+// The state of a rigid plate is one coordinate and one velocity, since a plate has a single mode.
 RestingPlate::Impact RestingPlate::strike(Knot& here) {
   const RigidContact& contact = *model_.rigid_contact();
   const double shape = model_.basis().contact_shape()[0], plane = model_.contact_gap();
@@ -34,7 +34,7 @@ RestingPlate::Impact RestingPlate::strike(Knot& here) {
 }
 
 void RestingPlate::begin(Knot& here, double stretch_end) {
-  constexpr double looks = 32;  // number of evaluations of the force between two breakpoints, unless a voltage oscillates
+  constexpr double looks = 32;  // evaluations of the force until the next breakpoint; more if a voltage oscillates
   force_ = here.rates[0] / model_.basis().contact_shape()[0];
   here.rates[0] = 0;
   look_ = std::min((stretch_end - here.time) / looks, drives_.resolving_step(here.time));
@@ -46,8 +46,8 @@ RestingPlate::Stay RestingPlate::stay(const Knot& here, double stretch_end) {
   if (pressed && next < 0) {
     const double last = t;
     t = bracketed_zero([&](double at) { return load(here, at); }, here.time, last);
-    // End the rest at a time at which the force pulls the plate off. Exactly at the zero of the force the plate would rest
-    // again.
+    // Move the end of the rest from the zero of the force to a slightly later time, at which the force pulls the plate off.
+    // Exactly at the zero, the plate would count as resting again.
     for (double more = 1e-15 * last; (next = load(here, t)) >= 0; more *= 2) t = std::min(last, t + more);
   }
   force_ = next;

@@ -18,8 +18,9 @@ namespace softland {
 
 class StepMotion {
  public:
-  /// `tolerance` is that of the integrator: each quintic piece has an error of `tolerance`, at most 1e-5, relative to the
-  /// amplitude of the fastest mode. The motion is that of contact number `contact`.
+  /// Describes the motion of contact number `contact`. `tolerance` is the relative tolerance of the integrator; a step is
+  /// divided into pieces so short that the error of a quintic is at most the smaller of `tolerance` and 1e-5, relative to the
+  /// amplitude of the fastest mode.
   StepMotion(const Switch& model, double tolerance, std::size_t contact = 0);
 
   /// Sets the step between two points of the motion (knots); `end` is the contact point at the end of the step. Keeps
@@ -33,14 +34,16 @@ class StepMotion {
   [[nodiscard]] double length() const { return end_->time - begin_->time; }
   /// Returns the motion of the contact point at the end of piece k of the step, 1 <= k < pieces().
   [[nodiscard]] const ModalMotion::Sample& knot(int k) { return motion().knot(k); }
-  /// Returns the motion of the contact point at a time in the step [s]. Call the function only if moves_by_modes().
+  /// Returns the motion of the contact point at a time in the step [s]. Call the function only if moves_by_modes() is true: the
+  /// fastest mode's phase then advances by at most two radians in the step.
   [[nodiscard]] ModalMotion::Sample at(double time) { return motion().at(time - begin_->time); }
 
   /// Returns modal coordinates, velocities and film pressures halfway through the step by Hermite interpolation; valid until
   /// the next call of halfway() or state_at().
   const std::vector<double>& halfway();
   /// Returns modal coordinates and velocities after a share of the step: the free motion of the modes under the force at the
-  /// start, plus a quintic. Call the function only if moves_by_modes(), and without a compressible film.
+  /// start, plus a quintic. `share` is from 0 to 1. Call the function only if moves_by_modes() is true, and for a switch
+  /// without a compressible film.
   const std::vector<double>& state_at(double share);
 
  private:

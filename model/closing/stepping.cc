@@ -19,17 +19,18 @@ namespace {
 // changes without need.
 constexpr double held_back = 2;  // value of Stepper::stiffness() above which stability limits the step length
 constexpr long steps_to_look = 100;
-// The conditions under which an implicit integration method replaces the explicit method.
+// Rule that says when an implicit integration method replaces the explicit method, and with which tolerance.
 struct TakeOver {
-  int looks = 50;  // number of checks in a row that find steps limited by stability, before the method changes
+  int looks = 50;  // the method changes when this many checks in a row find steps limited by stability
   // Factor on the tolerance for the implicit method. The explicit method, limited by stability, took a hundred times the steps,
   // so its errors were far below its tolerance; the implicit method's should be as small.
   double tolerance = 0.01;
 };
 
-// Returns when an implicit method replaces the explicit one. A film that is squeezed out along the face of a dielectric remains
-// stiff. The implicit steps are then limited by kinks of the contact pressure, as one point of the beam after the other touches
-// the face, so a tighter tolerance would not help.
+// Returns when an implicit method replaces the explicit one for a device. When a beam closes along the face of a dielectric,
+// the gas film makes the equations stiff until the end, so the method changes early. The implicit steps are then limited by
+// kinks of the contact pressure, as one point of the beam after the other touches the face, so a tighter tolerance would not
+// help.
 TakeOver take_over(const Device& device) {
   return device.lands_along_face() && device.gas ? TakeOver{.looks = 2, .tolerance = 1} : TakeOver{};
 }
@@ -155,7 +156,7 @@ std::optional<Stepping::Step> Stepping::advance(double stop, EnergyAudit& audit)
   if (step.event) {
     if (!step_again(*step.event)) return std::nullopt;
     consider_step();
-    // The event may precede points of this step's motion that have been added already.
+    // Remove points of this step's motion that have been added already, if they are later than the event.
     for (FollowedContact& c : parts_.contacts) c.pending_knots.take_back(next_.time, here_.time);
   }
   step.field = parts_.equations.field(next_.state.data());
@@ -224,15 +225,15 @@ double Stepping::force_on_line(const FollowedContact& contact, double time) {
   return std::lerp(from.contact_force, to.contact_force, (time - from.time) / (to.time - from.time));
 }
 
-// Records the motion of all contacts from here_ to next_, up to the first change of a contact law that needs a restart of the
-// integrator. Sets `event` to this change. Returns false when the step failed.
+// Adds the motion of all contacts from here_ to next_ to their records, up to the first change of a contact law at which the
+// integrator must restart. Sets `event` to this change, if there is one. Returns false when the step failed.
 bool Stepping::follow(std::optional<Event>& event) {
   const double until = parts_.contacts.size() > 1 ? first_event_time() : next_.time;
   return std::ranges::all_of(parts_.contacts, [&](FollowedContact& c) { return follow(c, until, event); });
 }
 
-// Returns the time of the first change of any contact law in the step, or the end of the step. Later points of the motion are
-// not recorded.
+// Returns the time of the first change of any contact law in the step, or the end of the step. follow() stops there: the step
+// is repeated up to this time, so its later motion is not valid.
 double Stepping::first_event_time() {
   double first = next_.time;
   for (FollowedContact& c : parts_.contacts) {
@@ -249,8 +250,9 @@ double Stepping::first_event_time() {
   return first;
 }
 
-// Records the motion of one contact through the step, up to the time `until` of the first event of any contact. Adds points of
-// the motion at the ends of the quintic pieces.
+// Adds the motion of one contact in the step to its records, with a point at the end of every quintic piece, up to the time
+// `until` of the first event of any contact. Sets `event` when this contact's law changes at that time. Returns false when the
+// step failed.
 bool Stepping::follow(FollowedContact& contact, double until, std::optional<Event>& event) {
   StepMotion& motion = contact.motion;
   for (int k = 1; k <= motion.pieces(); ++k) {
@@ -260,11 +262,11 @@ bool Stepping::follow(FollowedContact& contact, double until, std::optional<Even
     if (found && found->time <= until) {
       if (parts_.options.restart_at_contact || !parts_.model.has_contact()) {
         found->contact = contact.number;
-        if (!event) event = found;  // the second of two events at the same time is handled in the next step
+        if (!event) event = found;  // of two events at the same time, the next step handles the second
         return true;
       }
       if (!go_through(contact, *found, tip)) return false;
-      if (found->time < to.time) --k;  // repeat the remaining part of the piece
+      if (found->time < to.time) --k;  // next, search the rest of this piece for further changes
     } else if (to.time > until) {
       return true;
     } else if (k < motion.pieces()) {

@@ -31,8 +31,8 @@ namespace softland {
 [[nodiscard]] std::optional<Eigen::VectorXd> start_of(const Switch& model, std::span<const Signal> signals,
                                                       const ClosingOptions& options);
 
-/// Records of one contact of a closing: phase, touches, force and motion. A switch without contact has one for its contact
-/// point.
+/// One contact of a closing: its number and phase, and the records of its touches, force and motion. A switch without contact
+/// has one FollowedContact, for its contact point.
 struct FollowedContact {
   FollowedContact(const Switch& model, std::size_t contact, ContactPhase& contact_phase, const ClosingOptions& options,
                   ClosingObserver& observer)
@@ -54,7 +54,7 @@ struct FollowedContact {
   TrajectoryPoint end;  ///< contact point at the end of the current step
 };
 
-/// The parts of a simulated closing, which keep references to each other.
+/// The objects that simulate a closing together; they keep references to each other.
 struct ClosingParts {
   const Switch& model;
   const ClosingOptions& options;

@@ -18,10 +18,10 @@ struct Tolerances {
   /// Derives the absolute tolerances of all states from a relative tolerance.
   Tolerances(const Switch& model, double relative) {
     // The absolute tolerances are the relative tolerance times a length: one length for flight, one for contact. Later touches
-    // magnify errors of the flight, so its length is shorter than the contact gap. With these lengths a relative tolerance of
-    // 1e-6 gives first contact time, impact velocity and highest rebound of the reference closing to four digits. Measured
-    // sensitivity: the error of the highest rebound is proportional to the length for flight, but changes by less than a tenth
-    // when the length for contact changes tenfold.
+    // magnify errors of the flight, so the length for flight is shorter than the contact gap. With these lengths, a relative
+    // tolerance of 1e-6 gives first contact time, impact velocity and highest rebound of the reference closing
+    // (scenes/mem-gold.toml) to four digits. Measured sensitivity: the error of the highest rebound is proportional to the
+    // length for flight, but changes by less than a tenth when the length for contact changes tenfold.
     constexpr double flight_fraction = 1.0 / 30;  // length for flight, as a share of the contact gap
     // Length for contact, in units of the interference under the static force that bends the beam by the contact gap.
     constexpr double penetrations_in_contact = 1;

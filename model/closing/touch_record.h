@@ -45,7 +45,8 @@ class TouchRecord {
   std::size_t contact_;
   const ContactPhase& phase_;
   ClosingObserver& observer_;
-  // Position of the contact plane [m]; the summits' pressure over hardness and root of interference (summit_pressure_scale()).
+  // Position of the contact plane [m]; factor between the root of the interference d and the pressure of the highest summit
+  // over the hardness, p / H = factor sqrt(d) [1/m^0.5] (summit_pressure_scale()).
   double plane_, pressure_scale_;
   Touch touch_;
   long count_ = 0;
