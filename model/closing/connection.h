@@ -94,8 +94,8 @@ class ConnectionCourse {
     bool connects_;
   };
 
-  /// Returns the contact whose separation is that of the connection at this time: the contact with the largest (or smallest)
-  /// separation. `present` is the contact that has decided until now; it still decides when another contact has the same
+  /// Returns the contact with the largest (or smallest) separation at this time, which is also the separation of the
+  /// connection. `present` is the contact that has decided until now; it still decides when another contact has the same
   /// separation.
   [[nodiscard]] std::size_t decides(double time, std::size_t present) const;
   void follow_to(double time);

@@ -31,7 +31,7 @@ struct Edge {
   double level = 0;  ///< position of the contact point at which this branch of the contact law ends [m]
   double side = 0;   ///< 1: this branch of the contact law acts beyond the level, towards the contact; -1: before the level
   Phase next = Phase::flight;
-  std::size_t zone = 0;  ///< in phase `next`: number of the law's kinks at smaller interferences
+  std::size_t zone = 0;  ///< number of the law's kinks at smaller interferences than phase `next`
 };
 
 class ContactPhase {

@@ -26,9 +26,9 @@
 
 namespace softland {
 
-/// A contact in an integration step: its motion in the step, its point of the motion at the start of the step's last quintic
-/// piece and at the end of the step, and the state of its contact law. `is_in_contact` is true when the contact point is at or
-/// below the contact plane.
+/// One contact in an integration step. `motion` is its motion in the whole step; `from` and `to` are its points at the start of
+/// the step's last quintic piece and at the end of the step. `is_in_contact` is true when the contact point is at or below the
+/// contact plane.
 struct ContactInStep {
   StepMotion& motion;
   const TrajectoryPoint& from;

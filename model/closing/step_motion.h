@@ -18,9 +18,8 @@ namespace softland {
 
 class StepMotion {
  public:
-  /// Describes the motion of contact number `contact`. `tolerance` is the relative tolerance of the integrator; a step is
-  /// divided into pieces so short that the error of a quintic is at most the smaller of `tolerance` and 1e-5, relative to the
-  /// amplitude of the fastest mode.
+  /// Describes the motion of contact number `contact`. A step is divided into pieces so short that the error of a quintic is at
+  /// most `tolerance` (the relative tolerance of the integrator) or 1e-5, relative to the amplitude of the fastest mode.
   StepMotion(const Switch& model, double tolerance, std::size_t contact = 0);
 
   /// Sets the step between two points of the motion (knots); `end` is the contact point at the end of the step. Keeps

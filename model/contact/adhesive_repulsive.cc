@@ -10,8 +10,8 @@ namespace softland {
 template <>
 double AdhesiveRepulsiveContact::find_touch(const SurfacePressure& law) {
   const AdhesiveRepulsiveContact contact(law, 1, 0);
-  // Number of distances at which the sign of the pressure is checked, from near the reach (where the pressure ends at 0)
-  // inwards.
+  // First contact is at the largest distance at which the pressure changes its sign. The sign is checked at this number of
+  // distances, from the reach of the law inwards; at the reach itself the pressure is 0.
   constexpr int looks = 4096;
   for (int i = looks - 2; i > 0; --i) {
     const double x = law.reach * i / looks, further = law.reach * (i + 1) / looks;

@@ -22,7 +22,8 @@ GaussianTail::GaussianTail() {
     }
   };
   c[0] = 1;
-  // Start from the asymptotic slope of F_n at large h, for value 1; the error of this start decays towards smaller h.
+  // Start with the value 1 and with the ratio of slope to value that F_n has for large h. The error of this start decays
+  // towards smaller h.
   c[1] = -(start + (order + 1) / start);
   constexpr auto above = static_cast<std::size_t>((start - last) / spacing);
   for (std::size_t i = nodes + above; i-- > 0;) {

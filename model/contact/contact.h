@@ -58,7 +58,8 @@ struct Contact {
   double pad_width = std::numeric_limits<double>::quiet_NaN();
   std::string name = {};         ///< name of the contact; empty for the only contact
   std::optional<Place> at = {};  ///< centre of the contact pad along the beam; if empty, see Device::contact_position()
-  /// Distance of the contact point from its contact plane at rest [m]; not used for the first contact, see Device::gap.
+  /// Distance of the contact point from its contact plane at rest [m]; not used for the first contact, whose distance is in
+  /// Device::gap.
   double gap = std::numeric_limits<double>::quiet_NaN();
   Side side = Side::near;   ///< side of the beam; `far` for a back stop
   bool along_face = false;  ///< true for a contact along the whole face of a dielectric; its force law is per area

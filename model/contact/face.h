@@ -2,7 +2,7 @@
 // `asperity-uniform`.
 //
 //   wall, linear       p = k max(0, d)        U = a k d^2 / 2        d = b - h
-//   asperity-uniform   p and U of model/contact/asperity_uniform.h with An = 1 m^2, and with An / m = a; b = Hm
+//   asperity-uniform   p and U / a are force and energy per area An of model/contact/asperity_uniform.h; b = Hm
 //
 // p is the pressure of the face on the beam [Pa], d depth [m], h local gap between beam and face, b height above the face from
 // which the pressure acts, k stiffness per area [Pa/m], U energy per length [J/m], a local width [m]. The law is lossless.
@@ -11,12 +11,13 @@
 //
 // For a `wall`, the electric field does not grow when the beam sinks below the face. The k of a wall is such that the field of
 // the voltage 2 V1 presses the beam in by a fiftieth of H = t / eps_r + roughness (dielectric thickness t), the smallest
-// effective gap of the field; this is our choice. V1^2 = 8 K g^3 / (27 eps0 A) closes parallel plates. K is the stiffness of
-// the beam at the contact point [N/m], g the rest gap of the field, A the area of the faces [m^2].
+// effective gap of the field; this is our choice. V1, with V1^2 = 8 K g^3 / (27 eps0 A), is the pull-in voltage of parallel
+// plates. K is the stiffness of the beam at the contact point [N/m], g the rest gap of the field, A the area of the faces
+// [m^2].
 //
 // For `linear`, the field keeps growing when the beam sinks in. The beam collapses onto the electrode if k is below 27 eps0 V^2
-// / (8 (H + b)^3): the limit of parallel plates whose springs are relaxed where the pressure begins. Asperities keep such
-// plates off the electrode up to a voltage V:
+// / (8 (H + b)^3): the limit for parallel plates whose suspension is relaxed where the pressure begins. Asperities keep these
+// parallel plates apart up to a voltage V:
 //
 //   eps0 V^2 / 2 = max over d of p(d) (H + b - d)^2
 //
@@ -38,7 +39,7 @@ namespace softland {
 /// contact point [N/m]. `gap` is the rest gap of the field [m], `area` its area [m^2], `depth` its smallest effective gap [m].
 [[nodiscard]] constexpr double wall_stiffness(double stiffness, double gap, double area, double depth) {
   constexpr double voltages = 2, sinks = 1.0 / 50;
-  // Vacuum permittivity times the square of twice the voltage that closes parallel plates [N].
+  // Vacuum permittivity times the square of twice the pull-in voltage of parallel plates [N].
   const double eps0_square = 8.0 / 27 * stiffness * gap * gap * gap / area * voltages * voltages;
   return eps0_square / (2 * sinks * depth * depth * depth);
 }
@@ -49,9 +50,9 @@ namespace softland {
   return 27.0 / 8 * vacuum_permittivity * voltage * voltage / (depth * depth * depth);
 }
 
-/// Returns the voltage up to which the dielectric's face keeps parallel plates apart whose springs are relaxed where the
-/// pressure begins [V]. `pressure` is a law of elastic contact per area. `depth` [m] is the sum of the height at which the
-/// pressure begins and the smallest effective gap of the field.
+/// Returns the voltage [V] up to which the pressure of a dielectric's face keeps parallel plates apart, if their suspension is
+/// relaxed at the height at which the pressure begins. `pressure` is a law of elastic contact per area. `depth` [m] is the sum
+/// of the height at which the pressure begins and the smallest effective gap of the field.
 template <class Law>
 [[nodiscard]] double most_face_voltage(const Law& pressure, double depth) {
   double low = 0, high = depth;  // bounds of the depth at which pressure times squared gap is largest [m]

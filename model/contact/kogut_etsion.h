@@ -8,10 +8,10 @@
 //
 // w is the interference; w1 and P1 are those of first yield (plastic_asperity.h); K = 0.454 + 0.41 nu = 0.577, for Poisson's
 // ratio 0.3. As published the load jumps up by 3 % at w1, by 1.7 % at 6 w1 and by 8 % at 110 w1, where the fully plastic load 2
-// pi R w H takes over; at such a jump an integrator of motion would gain or lose energy. So every fit is scaled to begin where
-// the fit below ends: Hertz stays exact, and the fully plastic load is 0.885 of 2 pi R w H. Kinks remain at the three limits.
-// Validity: the fits are those of a frictionless elastic, perfectly plastic hemisphere on a rigid flat. Source: Kogut & Etsion
-// 2002, J. Appl. Mech. 69, 657; K: Chang, Etsion & Bogy 1987; the scaling is ours.
+// pi R w H takes over; at such a jump an integrator of motion would gain or lose energy. So every fit is scaled such that its
+// load continues that of the fit for smaller u: Hertz's law is not changed, and the fully plastic load is 0.885 of 2 pi R w H.
+// Kinks remain at the three limits. Validity: the fits are those of a frictionless elastic, perfectly plastic hemisphere on a
+// rigid flat. Source: Kogut & Etsion 2002, J. Appl. Mech. 69, 657; K: Chang, Etsion & Bogy 1987; the scaling is ours.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ class KogutEtsionAsperity {
  public:
   static constexpr double pressure_factor = 0.577;  ///< largest pressure at first yield over hardness (K)
 
-  /// Returns the work of loading one asperity: the integral of its load from interference 0 to u. Both are in units of first
-  /// yield.
+  /// Returns the work of loading one asperity from interference 0 to u, the integral of its load. Interference, load and work
+  /// are in units of w1, P1 and P1 w1.
   template <class S>
   static S first_integral(S u) {
     using std::sqrt;

@@ -29,7 +29,7 @@ struct LinearContactOf {
   S force(S d) const {
     return S(stiffness) * d;
   }
-  /// Returns the interference at which the spring carries a force [m].
+  /// Returns the interference at which the spring exerts this force [m].
   [[nodiscard]] double interference(double force) const { return force / stiffness; }
   [[nodiscard]] double energy(double d) const { return stiffness * d * d / 2; }
 };

@@ -66,7 +66,8 @@ template <class F>
   return (force(at + step) - force(at - step)) / (2 * step);
 }
 
-/// A user's own contact law as a switch calls it; `S` is double, or a dual number, whose slope is then a finite difference.
+/// A user's own contact law with the functions by which a switch calls every law. `S` is double or a dual number; derivatives
+/// of the force in a dual result are finite differences.
 template <bool by_rate>
 struct OwnContactForce {
   std::shared_ptr<const OwnContactLaw> own;

@@ -8,8 +8,8 @@
 // l mean free path of their electrons [m]; a radius of a spot [m]; F load on all spots [N], n of which share it evenly and
 // conduct in parallel; H hardness of the softer metal [Pa]; Rf resistance of a film in series with each of the m contacts in
 // parallel (Contact::count) [Ohm]; R (in a) radius of the summits [m] and E* effective modulus [Pa] of a law that has summits.
-// Such a spot is elastic while its mean pressure is below the hardness; the larger radius decides this. Without hardness a spot
-// is elastic at any load. A law without summits has one plastic spot for each contact.
+// A spot on a summit is elastic while its mean pressure is below the hardness, which is when the second radius is the larger
+// one. Without hardness a spot is elastic at any load. A law without summits has one plastic spot for each contact.
 //
 // Number n of summits in contact at the interference d, of N in all: N min(d, Hm) / Hm for uniform heights, N Q(4 - d / sigma)
 // for Gaussian ones, at least one for each contact. A dented summit stays in contact until its force vanishes. The load is the
@@ -17,10 +17,10 @@
 // contact without load is open: its conductance is 0.
 //
 // Limits: for l << a Holm's constriction rho / (2a) between two half spaces; for l >> a Sharvin's ballistic resistance, which
-// plastic spots have whatever their number. Spots do not interact: the distance between them exceeds their size. Heating,
-// softening and tunnelling are neglected. Source: R. Holm, Electric Contacts (1967); B. Nikolic & P. B. Allen, Phys. Rev. B 60
-// (1999) 3963 (arXiv cond-mat/9811296), after Wexler: G is their approximation of his function, and R1 stays within 11 % of the
-// plain sum of both limits.
+// for plastic spots does not depend on their number, since their total area is F / H. Spots do not interact: the distance
+// between them exceeds their size. Heating, softening and tunnelling are neglected. Source: R. Holm, Electric Contacts (1967);
+// B. Nikolic & P. B. Allen, Phys. Rev. B 60 (1999) 3963 (arXiv cond-mat/9811296), after Wexler: G is their approximation of his
+// function, and R1 stays within 11 % of the plain sum of both limits.
 #pragma once
 
 #include <cstddef>

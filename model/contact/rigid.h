@@ -28,7 +28,7 @@ template <class P>
 struct RigidContactOf {
   P restitution = 0;  ///< coefficient of restitution of an impact
 
-  static constexpr double rest_height = 1e-6;  ///< rebound height below which the plate rests, over the contact gap
+  static constexpr double rest_height = 1e-6;  ///< the plate rests after lower rebounds; as a share of the contact gap
 
   /// Returns true when a plate that leaves the stop at `speed` [m/s] against `acceleration` [m/s^2] would rebound less than
   /// rest_height times the contact gap, so that it counts as resting.
@@ -36,8 +36,8 @@ struct RigidContactOf {
     return acceleration > 0 && speed * speed < 2 * acceleration * rest_height * contact_gap;
   }
 
-  /// Returns 0: a rigid stop has no force as a function of the interference, and stores no energy. The plate is kept at the
-  /// stop by closing.cc in a simulation and by pull_in.cc in equilibria.
+  /// Returns 0: a rigid stop has no force as a function of the interference, and stores no energy. The stop acts outside this
+  /// law: model/closing.cc keeps the plate above it in a simulation, model/pull_in.cc in equilibria.
   template <class S>
   S force(S) const {
     return S(0);

@@ -6,7 +6,8 @@
 // which is that of its highest summit [m]; R radius of the summits [m]. Source: Hertz 1882.
 //
 // Limits: a summit yields from p / H = 0.4 on (Chang, Etsion & Bogy 1987, with their K = 0.6), and its pressure is the hardness
-// from about 1 on. The number above 0.4 indicates the depth of the dent, in proportion to the square root of d.
+// from about 1 on. Above 0.4, p / H is therefore not a true pressure, but shows how deeply the summit is dented: it grows with
+// the square root of d.
 #pragma once
 
 #include <cmath>

@@ -40,8 +40,8 @@ template <class Law>
       {.key = "asperity_density", .unit = "1/m^2", .about = "summits per area", .in = reach<Law, &Law::summits, &Summits::density>, .required = true, .such_as = "1e11 1/m^2"},
   });
 }
-/// Returns the scene-file key that sets the effective modulus; separate, since lists of keys have it after those of the
-/// heights.
+/// Returns the scene-file key that sets the effective modulus. It is not part of summit_fields(), since a law lists its keys
+/// for the summit heights between the two.
 template <class Law>
 [[nodiscard]] consteval auto modulus_fields() {
   return std::to_array<Field<Law>>({

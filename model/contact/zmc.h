@@ -23,8 +23,8 @@ class ZmcAsperity {
  public:
   static constexpr double pressure_factor = 0.6;  ///< largest pressure at first yield over hardness (K)
 
-  /// Returns the work of loading one asperity: the integral of its load from interference 0 to u. Both are in units of first
-  /// yield.
+  /// Returns the work of loading one asperity from interference 0 to u, the integral of its load. Interference, load and work
+  /// are in units of w1, P1 and P1 w1.
   template <class S>
   static S first_integral(S u) {
     using std::sqrt;

@@ -103,12 +103,12 @@ bool is_usual(const Switch& model) {
   const Device& device = model.device();
   const std::vector<Electrode>& all = device.electrodes;
   const auto alike = [&](const Electrode& e) { return e.side == Side::near && e.fringing == all.front().fringing; };
-  const bool is_plate = device.structure.is_rigid();  // all electrodes act on the same quadrature points
+  const bool is_plate = device.structure.is_rigid();  // electrodes of a plate share all points; UsualLaws needs separate ones
   const bool film = !device.gas || (std::holds_alternative<StripGas>(*device.gas) && std::isnan(far_gap(*device.gas)));
   const bool usual_field = model.modes() <= simd::usual_modes && !device.dispersion && !model.stretching() && film &&
                            std::ranges::all_of(all, alike) && !(is_plate && all.size() > 1) &&
                            !electrode_conflict(device.structure, all);
-  // The only simd::UsualLaws for several contacts have this fringing law and a gas film.
+  // For several contacts simd::UsualLaws is compiled only with a gas film and the fringing law of van der Meijs and Fokkema.
   if (model.contacts() > 1) return usual_field && device.gas && !all.empty() && all.front().fringing == Fringing::meijs_fokkema;
   return usual_field && !device.structure.is_built() && std::holds_alternative<UniformAsperityContact>(model.contact());
 }
@@ -219,15 +219,16 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
   return layout;
 }
 
-// Returns the interference at which the contact stores this energy [m]. The energy must be small compared to that with all
-// asperities in contact.
+// Returns the interference at which the contact stores this energy [m]; for asperities the formula holds while only some of
+// them are in contact.
 double depth_of_energy(const ElasticContact& contact, double energy) {
   if (contact.law == simd::LaneContact::linear) return std::sqrt(2 * energy / contact.strength);
   const UniformAsperityContact law{.strength = contact.strength, .height = contact.height};
   return law.height * std::pow(energy / law.energy(law.height), 2.0 / 7);
 }
 
-/// Sets the limits of gaps on the far side of the moving part, for the electrodes and the gas film there.
+/// Sets the numbers with which the gaps on the far side of the moving part are computed and checked, for the electrodes and the
+/// gas film there.
 void set_far_side(LaneSwitch& s, const Device& device) {
   s.most_gap = std::numeric_limits<double>::infinity();
   const auto set = [&](double gap, double& both, double& floor) {
@@ -281,7 +282,8 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   const std::vector<LaneStretch> stretches = stretches_of(model);
   for (std::size_t k = 0; k < stretches.size(); ++k) {
     s.width[k] = stretches[k].width, s.thickness[k] = stretches[k].thickness;
-    // The effective viscosity of a film with open ends depends on the width: more gas leaves through the ends of a wide film.
+    // Set the effective viscosity of each stretch of a beam of several widths: more gas leaves through the open ends of a wide
+    // film.
     if (!device.structure.is_built() || !device.gas) continue;
     std::visit(
         [&](const auto& film) {
@@ -367,14 +369,16 @@ class ContactAdapter final : public simd::LaneObserver {
   ConnectionTouches touches_;
 };
 
-/// Returns true when any contact but the first is closed at the start of a run, in the open equilibrium `rest`.
+/// Returns true when a contact other than the first, such as a back stop, is closed in the open equilibrium `rest`. Closings in
+/// SIMD lanes must start with all contacts open.
 bool rests_on_contact(const Switch& model, const Eigen::VectorXd& rest) {
   for (std::size_t c = 1; c < model.contacts(); ++c)
     if (model.contact_deflection(rest.data(), c) > model.contact_gap(c)) return true;
   return false;
 }
 
-/// Returns true when a drive changes the dispersion force in the run. drive_energy() cannot compute the work of such a drive.
+/// Returns true when a drive changes the dispersion force in the run. Its work is not part of drive_energy(), so the closing is
+/// not simulated in a SIMD lane if the energy is needed.
 bool drives_dispersion(const EnsembleClosing& c) {
   for (std::size_t k = 0; k < c.drives.size(); ++k) {
     if (c.model->drive_kind(k) == DriveKind::dispersion && !c.drives[k].is_zero()) return true;

@@ -62,7 +62,8 @@ class LandingObserver {
   LandingObserver& operator=(const LandingObserver&) = default;
 };
 
-/// A closing to be simulated in a SIMD lane. Limits of time and the contact force for settling are as in ClosingOptions.
+/// A closing to be simulated in a SIMD lane. The members after_contact, no_end_before, no_contact_before (times at which a run
+/// ends) and steady_force have the meaning of those of ClosingOptions.
 struct EnsembleClosing {
   const Switch* model = nullptr;
   std::span<const Signal> drives;
@@ -76,7 +77,7 @@ struct EnsembleClosing {
 };
 
 /// The result of a closing in a SIMD lane. When `followed` is false, the closing was not simulated to its end: simulate it with
-/// simulate_closing(). Its observer may have received events up to the failure.
+/// simulate_closing(). EnsembleClosing::observer may have received touches and rebounds up to the failure.
 struct EnsembleEnd {
   bool followed = false;
   double time = 0;  ///< time at which the simulation ended [s]

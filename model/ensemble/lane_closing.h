@@ -81,7 +81,7 @@ struct LaneContactNumbers {
 /// One switch in a SIMD lane, as plain numbers. Entries of modes that the switch does not have are 0.
 struct LaneSwitch {
   int modes = 0;
-  double open = 0, floor = 0;     // largest gap at rest; smallest valid gap, below which a run fails [m]
+  double open = 0, floor = 0;     // largest gap at rest; smallest gap: a run fails below [m]
   double omega[most_modes] = {};  // angular frequencies of the modes [rad/s]
   // Piezo force per volt [N kg^(-1/2) / V] and damping [1/s] of each mode.
   double piezo[most_modes] = {}, friction[most_modes] = {};
@@ -95,12 +95,14 @@ struct LaneSwitch {
   // Mean free path of the gas, height and length of the slit under the film [m].
   double mean_free_path = 0, slit_height = 0, slit_length = 0;
   double damping = 0;  // damping per length of the gas law `linear` [N s/m^2]
-  // Near gap plus far gap [m], for each electrode on the far side, and for a gas film there.
+  // Sum of the gaps on the near and the far side of the beam [m], from which the far gap follows; for each electrode on the far
+  // side, and for a gas film there.
   double electrode_gaps[most_drives] = {}, film_gaps = 0;
-  // Smallest valid gap on the far side [m], for each electrode and for the gas film.
+  // Smallest gap on the far side, below which a run fails [m]; for each electrode there and for the gas film.
   double electrode_floor[most_drives] = {}, film_floor = 0;
-  double most_gap = 0;  // largest near gap at which all far gaps are still valid [m]
-  // Dispersion force: Hamaker constant [J], equilibrium distance [m], gap at which the Casimir law takes over [m].
+  double most_gap = 0;  // gap on the near side above which a far gap is too small [m]
+  // Dispersion force: Hamaker constant [J], equilibrium distance [m], gap from which on the Casimir law replaces that of van
+  // der Waals [m].
   double hamaker_constant = 0, equilibrium_distance = 0, crossover = 0;
   double tension = 0;  // stiffness of mid-plane stretching [N/m]
   // Integrals of the products of mode slopes, for mid-plane stretching [1/(kg m)].

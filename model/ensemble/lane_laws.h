@@ -265,8 +265,8 @@ class AnyLaws {
       smallest = min(smallest, gap), largest = max(largest, gap);
       gap_[p] = max(gap, floor), velocity_[p] = velocity, load_[p] = 0;
     }
-    // A run fails when `least` is below `floor`. The second argument of min() makes this happen when a far gap is too small as
-    // well.
+    // A run fails when `least`, the smallest gap, is below its limit `floor`. The second argument of min() is below `floor`
+    // when a gap on the far side is too small, so that the run then fails as well.
     least = min(smallest, floor + (most_gap_ - largest));
   }
 

@@ -78,8 +78,8 @@ class SimdClosings {
     // Branch of the law of a contact with memory: unloading, or in the dent that it has left (else loading); see
     // contact_phase.h.
     bool unloading = false, in_dent = false;
-    bool to_turn = false;  // true while the step should end where the contact point turns back
-    double level = 0;      // otherwise the position at which the step should end, a change of the contact law [m]
+    bool to_turn = false;  // true when the step should end where the contact point turns back
+    double level = 0;      // position at which the step should end if not at a turn [m]
     // Positions between which the present branch of the contact law acts; deepest interference of the contact [m].
     double low = 0, high = 0, deepest = 0;
     double steady = nothing;  // time from which the force has been at or above EnsembleClosing::steady_force [s]
@@ -98,8 +98,8 @@ class SimdClosings {
     const LanePiece* drive[most_drives] = {};
     int count[most_drives] = {};    // number of signal pieces of each drive
     int piece[most_drives] = {};    // index of the current signal piece of each drive
-    bool runs[most_drives] = {};    // true within signal pieces that join smoothly, so that steps may cross their ends
-    bool curves[most_drives] = {};  // true when the voltage has exponentials, a sine, or pieces that join
+    bool runs[most_drives] = {};    // true in signal pieces that join smoothly: steps may cross their ends
+    bool curves[most_drives] = {};  // true when the present voltage is not a single straight line or cubic
     int corrections = 0;            // how often the end of a step was corrected to meet a change of a contact law
     double stop = 0;                // next breakpoint of the drives, or the end of the simulated window [s]
     double longest = 0;             // longest step that resolves the drive voltages [s]
@@ -423,14 +423,14 @@ class SimdClosings {
     for (int k = 0; k < pieces; ++k) {
       const double p1 = knot_p_[c][k + 1][l], v0 = knot_s_[c][k][l], v1 = knot_s_[c][k + 1][l];
       const bool ends_inside = side * (p1 - level) >= 0;
-      if (side * v0 < 0 && side * v1 > 0 && inside) {  // the motion turns back in this piece
+      if (side * v0 < 0 && side * v1 > 0 && inside) {  // it moves outwards and turns back: it may be outside between
         const QuinticPath path = quintic_path(c, k, l, length);
         const double turn = path.turn();
         if (side * (path.position(turn) - level) < 0) return (k + path.meets(level, 0, turn)) / pieces;
       } else if (!ends_inside) {
         const QuinticPath path = quintic_path(c, k, l, length);
         if (inside) return (k + path.meets(level, 0, 1)) / pieces;
-        if (side * v0 > 0 && side * v1 < 0) {  // the motion starts on the boundary and turns back
+        if (side * v0 > 0 && side * v1 < 0) {  // from the boundary inwards, and back out
           const double turn = path.turn();
           if (side * (path.position(turn) - level) > 0) return (k + path.meets(level, turn, 1)) / pieces;
         }
@@ -488,7 +488,8 @@ class SimdClosings {
     }
   }
 
-  // Returns the interference at which the curve of first loading has the same force as the contact now has at `depth` [m].
+  // Returns the interference at which first loading gives the force that the contact now has at the interference `depth` [m];
+  // forces of all branches are compared by this number.
   [[nodiscard]] double depth_of_force([[maybe_unused]] Number c, [[maybe_unused]] std::size_t l, double depth) const {
     if constexpr (Contact::has_memory) {
       const Followed& one = lane_[l].contact[c];
@@ -539,7 +540,7 @@ class SimdClosings {
         QuinticPath ahead = path;
         for (int i = 0; i < 6; ++i) ahead.c[i] -= other.c[i];
         at = ahead.meets(plane_[first][l] - plane_[last][l], 0, 1);
-        if (other.speed(at) < 0) {  // `last` becomes the nearest contact while it still moves away
+        if (other.speed(at) < 0) {  // the largest separation is reached later, by contact `last`
           rise_to(lane, plane_[last][l] - other.position(other.turn_between(at, 1)));
           continue;
         }
@@ -624,7 +625,8 @@ class SimdClosings {
   [[gnu::always_inline]] void settle(V h, V end, V error) {
     control(error);
     rounds_ += V(1);
-    // Most SIMD lanes accept their step and continue; the other lanes are treated one by one.
+    // Lanes with an accepted step without event, breakpoint or failure continue together; consider() treats the others one by
+    // one.
     const M plain = error <= V(1) && !special_ && !suspect_ && h < limit_ && end < until_ && smallest_ >= laws_.floor() &&
                     rounds_ < V(most_rounds);
     M rises[room];
@@ -705,7 +707,8 @@ class SimdClosings {
         lane_[l].contact[at].hardest = most_push[l];
   }
 
-  // Returns true when a SIMD lane that needs special treatment accepts its step; otherwise sets the length of its next attempt.
+  // Returns true when a SIMD lane accepts its step; otherwise sets the length of its next attempt. It is called for lanes that
+  // are not `plain`: with too large an error, a possible event or an end of the step at a given time.
   bool consider(std::size_t l, double h, double error) {
     Lane& lane = lane_[l];
     if (lane.closing == nullptr) return false;
@@ -787,7 +790,7 @@ class SimdClosings {
         const double v = trial_v_[i][l], a = trial_a_[i][l];
         trial_q_[i][l] = trial_q_[i][l] + later * (v + later / 2 * a);
         trial_v_[i][l] = v + later * a;
-        trial_a_[i][l] = a - later * square_[i][l] * v;  // in so short a time only the stiffness forces change noticeably
+        trial_a_[i][l] = a - later * square_[i][l] * v;  // other forces than those of stiffness hardly change in this time
       }
       moved_[l] = later;
       if constexpr (has_several) move_others(at, l);
@@ -806,7 +809,8 @@ class SimdClosings {
     return false;
   }
 
-  // Recomputes the motion of the contacts other than `at` at the corrected end of a SIMD lane's step.
+  // Recomputes position, speed and acceleration of the contacts other than `at`, after the end of a SIMD lane's step has been
+  // moved to the event of contact `at`.
   void move_others(int at, std::size_t l) {
     for (int c = 0; c < layout_.contacts; ++c) {
       if (c == at) continue;
@@ -820,7 +824,7 @@ class SimdClosings {
   }
 
   // Continues a SIMD lane after an accepted step that did not end normally: at a breakpoint of the drives, at a change of a
-  // contact law, at the end of the closing, or with an invalid gap.
+  // contact law, at the end of the closing, or with a gap below its limit.
   void go_on(std::size_t l, double h) {
     Lane& lane = lane_[l];
     if (smallest_[l] < laws_.floor()[l]) {
@@ -887,7 +891,8 @@ class SimdClosings {
     if (!one.touching) return false;
     if (one.to_turn) {
       const double speed = speed_[c][l], acceleration = acceleration_[c][l];
-      // Minus the distance that the decelerating contact point still moves to its deepest position.
+      // Position of the contact point relative to its deepest position, which it reaches a little later at constant
+      // deceleration; zero or negative.
       const double left = acceleration < 0 ? speed * speed / (2 * acceleration) : 0;
       const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
       const double depth = position_[c][l] - plane_[c][l] - left;
@@ -973,7 +978,7 @@ class SimdClosings {
   }
 
   static void tell_rebound(const Lane& lane, double begin, double end, double height) {
-    // Largest height that does not count as a rebound, as a share of the contact gap; as in ReboundFinder.
+    // Lower separations do not count as rebounds; as a share of the contact gap, and equal to that of ReboundFinder.
     constexpr double on_the_plane = 1e-12;
     if (height > on_the_plane * lane.closing->numbers->contact[0].plane) lane.closing->observer->rebound(begin, end, height);
   }
@@ -1100,7 +1105,7 @@ class SimdClosings {
     for_contacts([&](Number c) { take(s.contact[c], c, l); });
     apart_[l] = false;
     enter_stretch(l);
-    if (idle) lane.closing = nullptr;  // special_ remains true for this lane, so that its steps are not accepted
+    if (idle) lane.closing = nullptr;  // special_ stays true for the lane: no step is accepted
   }
 
   // Sets the parameters of a contact of the SIMD lane's new switch, and its state before first contact.
@@ -1148,7 +1153,7 @@ class SimdClosings {
   V position_[room], speed_[room], acceleration_[room];
   V knot_p_[room][pieces + 1], knot_s_[room][pieces + 1], knot_c_[room][pieces + 1];
   M touching_[room]{}, touched_[room]{}, turns_[room]{}, suspect_{false};
-  M apart_{false};     // SIMD lanes in which a connection of type Connection::any is open
+  M apart_{false};     // SIMD lanes with an open connection of type Connection::any, for climb()
   M starting_{false};  // SIMD lanes whose next round only computes accelerations, with a step of length 0
   M to_event_{false};  // SIMD lanes whose step should end at a change of a contact law
   M special_{false};   // SIMD lanes that are idle, or marked in starting_ or to_event_
