@@ -237,7 +237,7 @@ Signal filtered(const Signal& input, double time_constant) {
 }  // namespace internal
 
 DriverLimits limits_of_samples(DriverLimits limits, const DriverModel& model) {
-  constexpr double rounding = 1e-9;  // rounding error of the slew between samples at late times, relative
+  constexpr double rounding = 1e-9;  // relative rounding error of the slew between two samples at late times
   if (model.sample_rate) limits.max_slew *= 1 + rounding;
   if (model.sample_rate && model.bits) limits.max_slew += internal::step_of(limits, *model.bits) * *model.sample_rate;
   return limits;

@@ -44,7 +44,8 @@ class Following {
     const double held = voltage(times.back());
     largest_ = std::max(largest_, std::abs(held));
     for (std::size_t k = 0; k + 1 < times.size(); ++k) {
-      // Where the user's waveform jumps, voltage() returns the voltage after the jump; the interval before must end before it.
+      // At a jump, voltage(end) is the voltage after the jump; the cubics of the interval must end on the voltage just before
+      // it.
       constexpr double rounding = 1e-12;
       const double end = times[k + 1], before = voltage(std::nextafter(end, times[k])), after = voltage(end);
       const double ends_on = std::abs(after - before) > rounding * largest_ ? before : after;

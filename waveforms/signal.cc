@@ -23,8 +23,8 @@ double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   if (has_the_slope(favourite)) return favourite;
   const double rise = piece.slope * duration;
   const double computed = piece.value + rise;
-  // Largest distance in units of the last digit from `rise` or `computed` at which the exact end value is searched. In 2e7
-  // random ramps the distance was at most one unit.
+  // Largest number of units of the last digit by which the rise, or the computed end value, is changed in the search for an
+  // exact end value. In 2e7 random ramps the distance was at most one unit.
   constexpr int reach = 2;
   double rise_up = rise, rise_down = rise, value_up = computed, value_down = computed;
   for (int i = 0; i <= reach; ++i) {
@@ -56,7 +56,7 @@ double rounding_at_end(const SignalPiece& piece, double end) {
     }
     of_terms += size * (1 + std::abs(term.angular_frequency) * duration + std::abs(term.sweep) * duration * duration);
   }
-  // The times at both ends of the signal piece are rounded as well; the resulting voltage error grows with time.
+  // Add the voltage error due to the rounding of the times at both ends of the piece, which grows with time.
   return roundings * epsilon *
          (rate * end + straight + swing * (1 + piece.angular_frequency * end + std::abs(piece.phase)) + of_terms);
 }

@@ -41,7 +41,7 @@ bool is_polynomial(const SignalPiece& piece) {
                                             [](const SignalTerm& term) { return !term.turns() && term.decay == 0; });
 }
 
-// Returns the coefficients of a polynomial signal piece in powers of the time from `origin`.
+// Returns the coefficients of a polynomial signal piece in powers of the time after `origin` [s].
 std::array<double, 4> cubic_about(const SignalPiece& piece, double origin) {
   std::array<double, 4> c{piece.value, piece.slope};
   for (const SignalTerm& term : piece.terms) {
@@ -81,7 +81,8 @@ std::shared_ptr<const SignalPiece> derivative(const SignalPiece& above, const Si
   return std::make_shared<const SignalPiece>(std::move(piece));
 }
 
-// Returns a time inside signal piece k; for the last piece, a time after its beginning.
+// Returns a time inside signal piece k, at which two versions of the signal are compared; for the last piece, a time after its
+// beginning.
 double inner_time(const std::vector<SignalPiece>& pieces, std::size_t k) {
   constexpr double share = 0.4;
   return k + 1 < pieces.size() ? std::lerp(pieces[k].begin, pieces[k + 1].begin, share) : pieces[k].begin * (1 + share);

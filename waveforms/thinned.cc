@@ -9,7 +9,8 @@
 namespace softland {
 namespace {
 
-/// Chooses the rows of a voltage table that are kept: each straight line from a kept row reaches as far as the limit permits.
+/// Chooses the rows of a voltage table that are kept: each straight line from a kept row reaches as far as the limit on the
+/// integral of thinned less original voltage [V s] permits.
 class Thinning {
  public:
   Thinning(const Table& table, double limit) : time_(table.time), voltage_(table.voltage), limit_(limit) {
@@ -18,7 +19,8 @@ class Thinning {
       area_[i] = area_[i - 1] + (voltage_[i - 1] + voltage_[i]) / 2 * (time_[i] - time_[i - 1]);
   }
 
-  /// Returns the row of the voltage table to keep after the row `from`. Updates the integral of thinned less original voltage.
+  /// Returns the row of the voltage table to keep after the row `from`, and adds the interval between both rows to the integral
+  /// of thinned less original voltage.
   std::size_t next(std::size_t from) {
     constexpr std::size_t growth = 4, least_window = 8;
     const std::size_t farthest = std::min(from + growth * last_length_ + least_window, jump_after(from));

@@ -116,7 +116,7 @@ void ElectricalRecord::follow(Followed& followed, const Margin& at, double begin
     const double towards = from > 0 ? 1 : -1;
     const double after = at(begin + beside * (end - begin)) - from, before = at(end - beside * (end - begin)) - to;
     if (towards * after < 0 && towards * before < 0) {
-      // The minimiser needs arguments of order one: shares of the interval instead of times.
+      // The tolerance of the minimiser has an absolute part, too large for times: its argument is a share of the interval.
       const auto time = [&](double share) { return std::lerp(begin, end, share); };
       const double turn = time(
           boost::math::tools::brent_find_minima([&](double share) { return towards * at(time(share)); }, 0.0, 1.0, bits).first);

@@ -36,7 +36,7 @@ void ForceRecord::follow_path(const Force& force, double begin, double from, dou
   const double after = force(begin + beside * (end - begin)) - from, before = force(end - beside * (end - begin)) - to;
   if (!(after * before > 0)) return follow(force, begin, from, end, to);
   const double sign = after < 0 ? 1 : -1;
-  // The minimiser needs arguments of order one: shares of the interval instead of times.
+  // The tolerance of the minimiser has an absolute part, too large for times: its argument is a share of the interval.
   const auto at = [&](double share) { return std::lerp(begin, end, share); };
   const double turn =
       at(boost::math::tools::brent_find_minima([&](double share) { return sign * force(at(share)); }, 0.0, 1.0, bits).first);

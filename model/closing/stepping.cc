@@ -295,9 +295,10 @@ bool Stepping::go_through(FollowedContact& contact, const Event& event, const Ti
          fail(fmt::format("more than {} steps needed", parts_.options.max_steps));
 }
 
-// Repeats the last step so that it ends at the event (change of a contact law). An interpolated velocity would lower the order
-// of accuracy at every touch. The interpolated position may err by more than the interference of a stiff contact, so contact
-// would begin or end with a wrong energy. Taylor's series corrects a small error of the position, Newton's method a large one.
+// Repeats the last step so that it ends at the event (change of a contact law), since an interpolated state is not accurate
+// enough. Its velocity would lower the order of accuracy at every touch. Its position may err by more than the interference of
+// a stiff contact, so contact would begin or end with a wrong energy. If the repeated step misses the event by little, Taylor's
+// series moves its end; otherwise Newton's method corrects the end time.
 bool Stepping::step_again(const Event& event) {
   constexpr int most_corrections = 8;
   const Switch& model = parts_.model;
@@ -326,7 +327,7 @@ bool Stepping::step_again(const Event& event) {
     time -= off / model.contact_deflection(next_.state.data() + n_, event.contact);
   }
   if (!(time > here_.time)) next_ = here_;
-  parts_.equations.rates(next_);  // computes the gap field at next_ again
+  parts_.equations.rates(next_);  // restores the gaps along the beam at next_, for equations.field()
   return true;
 }
 

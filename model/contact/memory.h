@@ -38,7 +38,7 @@ struct ContactWithMemory {
   Elastic elastic = {};
 
   static constexpr bool heals = Heals;              ///< true when the residual deformation vanishes as the contact opens
-  static constexpr bool grows_with_depth = !Heals;  ///< true: the contact force is largest at the deepest interference so far
+  static constexpr bool grows_with_depth = !Heals;  ///< true if the contact force is largest at the deepest interference
 
   /// Returns the contact force on first loading [N]; energy() returns the work of loading [J].
   template <class S>

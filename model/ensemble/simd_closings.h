@@ -347,8 +347,8 @@ class SimdClosings {
   struct Reach {
     V least, most;
   };
-  // Returns bounds of the contact point's position in a piece of the step of duration `g`: the smallest and the largest of the
-  // quintic's Bernstein coefficients.
+  // Returns bounds of the contact point's position in piece k of the step, which lasts `g` [s]: the smallest and the largest of
+  // the Bernstein coefficients of the quintic.
   [[nodiscard]] [[gnu::always_inline]] Reach reach(Number c, int k, V g) const {
     const V b0 = knot_p_[c][k], b5 = knot_p_[c][k + 1], s0 = g * knot_s_[c][k], s1 = g * knot_s_[c][k + 1];
     const V c0 = g * g * knot_c_[c][k], c1 = g * g * knot_c_[c][k + 1];
@@ -774,7 +774,7 @@ class SimdClosings {
   }
 
   // Returns true when a step that should end at a change of a contact law does end there. If the step ends close to the change,
-  // its end is moved there; otherwise the target of the step is corrected and the result is false.
+  // its end is moved there; otherwise the end time of the step is corrected, the step is repeated, and the result is false.
   [[gnu::always_inline]] bool arrives(std::size_t l, double h) {
     constexpr double short_of_a_radian = 1e-3;
     constexpr int most_corrections = 8;
@@ -1164,7 +1164,7 @@ class SimdClosings {
   V until_;      // a lane's closing ends with the first step that ends at or after this time [s]
   V last_step_;  // length of the last step that ended neither at a breakpoint nor at an event [s]
   V growth_, most_growth_, rounds_;
-  V power_, powers_[7], work_{0};  // power of the drives on the modes [W], at the stages of a step [W], and work until now [J]
+  V power_, powers_[7], work_{0};  // power of the drives on the modes, now and at the stages of a step [W]; their work so far [J]
   // Error estimate of this step and of the last accepted step, as binary logarithms.
   float log_error_[width] = {}, last_error_[width] = {};
   double moved_[width] = {};

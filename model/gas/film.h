@@ -33,8 +33,8 @@ inline constexpr double incompressible = 10;
 struct FilmLimits {
   double least_knudsen = 0;
   double most_knudsen = std::numeric_limits<double>::infinity();
-  /// Largest squeeze number 12 mu a^2 omega / (p h^2) of the film: viscosity mu, width a, ambient pressure p, gap h, and rate
-  /// omega.
+  /// Largest squeeze number 12 mu a^2 omega / (p h^2) of the film: viscosity mu, width a, ambient pressure p, gap h, and
+  /// relative rate of change of the gap omega [1/s].
   double most_squeeze = std::numeric_limits<double>::infinity();
   bool needs_thickness = false;  ///< true when the law needs the thickness of the moving part
 };

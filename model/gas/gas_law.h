@@ -34,8 +34,8 @@ struct GasLaw : internal::LawsOf<Gas>::Type {
 /// torsion of a rectangular bar).
 [[nodiscard]] double end_flow(double ratio);
 
-/// Returns the gas law for constant width and thickness [m]: those of a structure, or those given. `unit_quality` as in Film.
-/// For a compressible film the result is its incompressible limit.
+/// Returns the gas law of a device for a moving part of constant width and thickness: those of a structure, or the arguments
+/// [m]. `unit_quality` is Film::unit_quality. For a compressible film the result is its incompressible limit.
 [[nodiscard]] GasLaw gas_law(const Gas& gas, const Structure& structure, double unit_quality);
 [[nodiscard]] GasLaw gas_law(const Gas& gas, double width, double thickness, double unit_quality);
 

@@ -23,7 +23,7 @@ struct Beam {
   std::vector<SectionPart> sections = {};  ///< sections of the beam from x = 0 on; empty for a uniform beam
   std::vector<LayerPart> layers = {};      ///< layers on the faces of the beam
   std::optional<Anchor> anchor = {};       ///< compliant anchor of the beam at x = 0; a rigid clamp if empty
-  std::optional<Anchor> far_anchor = {};   ///< compliant anchor at the far end; if empty, free or clamped by kind
+  std::optional<Anchor> far_anchor = {};   ///< compliant anchor at the far end; by default the kind's free end or clamp
   std::optional<RestShape> rest_shape = {};
 
   /// Returns true when the beam has sections or layers.

@@ -6,8 +6,8 @@
 // - `example()`, of the same argument, a structure that a switch may have, for tests
 // - `static constexpr std::array usual_spread`, the process variation of its devices when a scene gives none
 // - `auto modes(device, known) const`, its vibration modes: an object with
-//     angular_frequencies() [rad/s]; length() [m]; scale(), the shapes over the normalised ones [kg^(-1/2)];
-//     normalised(), which points to an object with value(x), slope(x) and pinned_inverse_square(x, near), x over the length;
+//     angular_frequencies() [rad/s]; length() [m]; scale(), mass-normalised shapes over normalised shapes [kg^(-1/2)];
+//     normalised(), a pointer to the normalised shapes: value(x), slope(x), pinned_inverse_square(x, near), x over the length;
 //     frequency_scale() [rad/s]: with a support added at x, the lowest frequency of the structure is
 //     frequency_scale() / sqrt(pinned_inverse_square(x))
 // `known` are the normalised modes of a similar beam, or null: the search for a beam's modes starts from these modes.
@@ -19,9 +19,10 @@
 // - `double rest_offset(device, x) const`, its distance at rest from the straight shape at x, away from the near electrode [m]
 //   and with it `double lowest_rest_offset(device) const`, the least of these distances along the structure
 // - `auto stretching(modes, structure) const`, an optional stiffness of mid-plane stretching
-// - `static constexpr bool is_rigid` or `has_far_clamp`, if it is true
+// - `static constexpr bool is_rigid` (a rigid body) or `has_far_clamp` (clamped at both ends), when true
 // - `static constexpr std::string_view why_no_layer` or `why_no_skins`: the reason why [piezo] or [surface] is impossible
-// - `static constexpr std::string_view whose` and `length_is` for messages: "on a plate", its length in words with {} for it
+// - `static constexpr std::string_view whose`, the place in messages, such as "on a plate", and `length_is`, words for the
+//   length of the structure, such as "the {} of the modes' table", in which the length replaces {}
 //
 // Functions that take a device are templates of its type, since a device contains structures; so they call beam_modes() of
 // model/beam.h without including this header, and a class that holds BeamModes is a template, too. `Structure`

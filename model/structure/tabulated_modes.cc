@@ -69,7 +69,7 @@ double ModalTable::lowest_rest_offset() const {
 }
 
 bool ModalTable::is_held_at_both_ends() const {
-  constexpr double still = 1e-4;  // motion that counts as 0, as a share of the mode's largest motion
+  constexpr double still = 1e-4;  // smaller motion of the far end counts as 0; share of the mode's largest motion
   return std::all_of(shapes_.begin(), shapes_.end(), [](const std::vector<double>& shape) {
     const auto [low, high] = std::minmax_element(shape.begin(), shape.end());
     return std::abs(shape.back()) <= still * std::max(-*low, *high);
@@ -140,7 +140,7 @@ std::shared_ptr<const ModalTable> ModalStructure::example_table() {
   static const auto table = [] {
     constexpr int places = 40;
     constexpr double length = 250e-6, mass = 19300 * 20e-6 * 2e-6 * length;
-    // Roots of cos x cosh x = -1 (modes of a cantilever), and frequencies of a gold cantilever [Hz].
+    // The modes of a gold cantilever: roots of cos x cosh x = -1, from which the shapes follow, and frequencies [Hz].
     constexpr std::array roots{1.87510406871, 4.69409113297}, frequencies{10394.0, 65139.0};
     std::vector<double> x;
     std::vector<std::vector<double>> shapes(roots.size());

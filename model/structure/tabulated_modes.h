@@ -3,14 +3,14 @@
 //
 //   q_i'' = -(f omega_i)^2 q_i + Q_i + ...      y(x) = sum over i of phi_i(x) q_i
 //
-// phi are mass-normalised modes [kg^(-1/2)], given by one row per place, omega angular frequencies [rad/s], f the factor of a
-// device's frequencies over those of the table. Between the places a cubic that is clamped at x = 0 interpolates
-// (base/clamped_spline.h): value and slope are 0 there. Q_i is the modal force of stretching between two clamps, to which the
-// other modal forces are added (model/stretching.h): the slopes are those of the cubics, and EA/L is the axial stiffness that a
-// scene gives. The modes have the interface of BeamModes, so that force laws per length act on the structure as on a beam.
-// Without an axial stiffness the model is valid while deflections are small compared to the thickness, since the modes are
-// linear. Source: modal superposition, any textbook on structural dynamics, e.g. Meirovitch, Fundamentals of Vibrations, 2001,
-// ch. 7.
+// q_i is a modal coordinate, y the deflection [m]. phi_i are mass-normalised modes [kg^(-1/2)], given at the positions of the
+// table, omega_i their angular frequencies [rad/s], f the ratio of a device's frequencies to those of the table. Between the
+// positions phi_i is a cubic spline whose value and slope are 0 at x = 0 (base/clamped_spline.h). Q_i is the modal force of
+// mid-plane stretching between two clamps (model/stretching.h), computed with the slopes of the splines and with the axial
+// stiffness E A / L that a scene gives; the other modal forces follow. The modes have the interface of BeamModes, so that force
+// laws per length act on the structure as on a beam. Without an axial stiffness the model is valid while deflections are small
+// compared to the thickness, since the modes are linear. Source: modal superposition, any textbook on structural dynamics, e.g.
+// Meirovitch, Fundamentals of Vibrations, 2001, ch. 7.
 #pragma once
 
 #include <Eigen/Core>
