@@ -1,5 +1,5 @@
-// Names of a waveform family, such as "pulse", and of its parameters. Scene files are read, checked and written by these
-// tables.
+// Tables of the waveform families: name of a family, such as "pulse", and names and kinds of its parameters. With these tables
+// scene files are read, checked and written.
 #pragma once
 
 #include <string_view>

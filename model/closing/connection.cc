@@ -61,8 +61,8 @@ std::size_t ConnectionCourse::decides(double time, std::size_t present) const {
 void ConnectionCourse::hand_over() {
   const Followed& any = followed_[deciding_];
   if (any.fresh.empty()) return;
-  // At the first point of the run, and where velocity or acceleration jumps, every contact has a new point at the same time.
-  // Pass on these points at once: there is no motion to interpolate before them.
+  // At the first point of the run, and at jumps of velocity or acceleration (two points of equal time), every contact has a new
+  // point. Pass on these points at once: there is no motion to interpolate before them.
   while (!any.fresh.empty() && (!any.last || any.fresh.front().time == any.last->time)) {
     for (Followed& c : followed_) {
       if (!c.connects()) continue;
@@ -155,8 +155,8 @@ std::optional<Touch> ConnectionTouches::finish() {
 
 ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts) {
   if (contacts.size() == 1) return contacts.front();
-  // A connection of all contacts settles with the last of them, and its least force is that of the weakest. Each result is NaN
-  // if that of one contact is NaN (unknown).
+  // A connection of all contacts settles with the last of them, and its least force is the smallest of theirs. Each result is
+  // NaN if that of one contact is NaN (unknown).
   const auto later = [](double a, double b) { return std::isnan(a) || a > b ? a : b; };
   const auto less = [](double a, double b) { return std::isnan(a) || a < b ? a : b; };
   std::optional<ForceOutcome> all;

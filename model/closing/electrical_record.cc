@@ -25,8 +25,8 @@ ElectricalRecord::Instant ElectricalRecord::instant(std::size_t c, const Contact
     const double length = contact.to.time - contact.from.time, share = length > 0 ? (time - contact.from.time) / length : 1;
     now.force = std::lerp(contact.from.contact_force, contact.to.contact_force, share);
   } else {
-    // A contact may close or open within the step. The position alone says whether a law without memory acts; a law with memory
-    // keeps its state, since the integrator restarts where the state changes.
+    // Where the integrator does not restart at contact, a law without memory may start or stop acting within the step; the
+    // position alone says whether it acts. A law with memory keeps its state, since its branch changes between steps only.
     const ContactState state = has_memory(law) ? contact.law : ContactState(now.interference > -model_.contact_reach(c));
     if (state.active) now.force = contact_force(law, now.interference, state, tip.velocity(time));
   }

@@ -43,7 +43,8 @@ class ElectricalRecord {
   /// opening.
   ElectricalRecord(const Switch& model, ClosingObserver& observer);
 
-  /// Adds an integration step between two times [s], during which every contact stays on one branch of its law.
+  /// Adds an integration step between two times [s]. In the step every contact stays on one branch of its law, except where the
+  /// integrator does not restart at contact.
   void take(double begin, double end, std::span<const ContactInStep> contacts);
   /// Adds an interval of time [s] in which the rigid plate rests on its rigid contact, under a force [N] that is a function of
   /// time.

@@ -48,7 +48,7 @@ class EnergyAudit {
   /// Returns the largest residual that settle() has found [J]; NaN if any residual was NaN.
   [[nodiscard]] double error() const { return error_; }
   /// Returns kinetic plus potential energy of the switch at a state, plus the energy that impacts on a rigid contact have
-  /// dissipated [J]. Its excess over the closed equilibrium is Trajectory::landing_excess.
+  /// dissipated [J]. The excess of this energy over that of the closed equilibrium is Trajectory::landing_excess.
   [[nodiscard]] double above_rest(const Knot& here);
 
  private:

@@ -16,8 +16,8 @@ struct Event {
   std::size_t contact = 0;  ///< number of the contact whose law changes
 };
 
-/// Returns the first change of a contact law's branch in (from, to]; none without a change. Both points bound a piece of an
-/// integration step.
+/// Returns the first change of a contact law's branch in (from, to]; none without a change. `from` and `to` are the ends of a
+/// piece of an integration step.
 [[nodiscard]] std::optional<Event> first_event(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to,
                                                const ContactPhase& phase);
 

@@ -30,7 +30,7 @@ ForceRecord::ForceRecord(const Switch& model, double threshold, std::size_t cont
 // middle, or falls from both ends, the interval is divided at the extremum of the force.
 template <class Force>
 void ForceRecord::follow_path(const Force& force, double begin, double from, double end, double to) {
-  constexpr double beside = 1e-6;  // share of the interval for the slope of the force at an end
+  constexpr double beside = 1e-6;  // the slope at an end is taken over this share of the interval
   constexpr int bits = 30;
   if (rises_with_depth_) return follow(force, begin, from, end, to);
   const double after = force(begin + beside * (end - begin)) - from, before = force(end - beside * (end - begin)) - to;

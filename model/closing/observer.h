@@ -1,5 +1,5 @@
 // The interface through which a simulated closing passes its motion on to an observer: knots (points of the motion) and touches
-// (intervals in contact), and more at the observer's request.
+// (intervals in contact). Observers that request them also receive integration steps, electrical states and energies.
 #pragma once
 
 #include <cstddef>
@@ -30,8 +30,8 @@ class ClosingObserver {
   virtual ~ClosingObserver() = default;
   /// Receives the next point of the motion (knot), in order of time. The point is final: no event can change it afterwards.
   virtual void knot(const TrajectoryPoint&) {}
-  /// Receives a touch (interval in contact) of the contact when the contact has opened. A touch that has not ended at the end
-  /// of the run is passed on then; its end is NaN.
+  /// Receives a touch (interval in contact) of the contact when the contact has opened. At the end of the run, a touch that has
+  /// not ended is passed on with the end NaN.
   virtual void touch(const Touch&) {}
   /// Returns the observer for motion and touches of contact `number` of a switch with several contacts; null when they are not
   /// needed. The present observer itself receives motion and touches of the connection (electrical path) through the contacts.

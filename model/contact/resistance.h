@@ -60,8 +60,9 @@ class ContactResistance {
 /// Returns the resistance of one contact of a device, for the width of the moving part at the contact.
 [[nodiscard]] ContactResistance contact_resistance(const Device& device, std::size_t contact);
 
-/// Returns the conductance of the connection (electrical path) through several contacts [S], from their conductances in the
-/// order of the device: in series if all contacts are needed, otherwise in parallel. NaN when a conductance is NaN (unknown).
+/// Returns the conductance of the connection (electrical path) through several contacts [S], from those of its contacts, given
+/// in the order of Device::contacts: in series for Connection::all, otherwise in parallel. NaN when a conductance is NaN
+/// (unknown).
 [[nodiscard]] double connection_conductance(const Device& device, std::span<const double> conductances);
 
 /// Returns the resistance [Ohm] of a conductance [S]; NaN for 0, since an open contact has no resistance.

@@ -81,7 +81,7 @@ struct LaneContactNumbers {
 /// One switch in a SIMD lane, as plain numbers. Entries of modes that the switch does not have are 0.
 struct LaneSwitch {
   int modes = 0;
-  double open = 0, floor = 0;     // largest gap at rest; smallest gap: a run fails below [m]
+  double open = 0, floor = 0;     // largest gap at rest; gap below which a run fails [m]
   double omega[most_modes] = {};  // angular frequencies of the modes [rad/s]
   // Piezo force per volt [N kg^(-1/2) / V] and damping [1/s] of each mode.
   double piezo[most_modes] = {}, friction[most_modes] = {};
@@ -98,7 +98,7 @@ struct LaneSwitch {
   // Sum of the gaps on the near and the far side of the beam [m], from which the far gap follows; for each electrode on the far
   // side, and for a gas film there.
   double electrode_gaps[most_drives] = {}, film_gaps = 0;
-  // Smallest gap on the far side, below which a run fails [m]; for each electrode there and for the gas film.
+  // Gap on the far side below which a run fails [m], for each electrode there and for the gas film.
   double electrode_floor[most_drives] = {}, film_floor = 0;
   double most_gap = 0;  // gap on the near side above which a far gap is too small [m]
   // Dispersion force: Hamaker constant [J], equilibrium distance [m], gap from which on the Casimir law replaces that of van

@@ -58,7 +58,7 @@ class UsualContact {
 template <class V>
 class AnyContact {
  public:
-  // The code for damping and memory exists; whether a contact uses it depends on its LaneContactKind.
+  // Simulations with this class contain code for damping and memory; LaneContactKind says whether a contact uses the code.
   static constexpr bool has_damping = true, has_memory = true;
 
   void take(const LaneContactKind& kind, const LaneContactNumbers& numbers, std::size_t l) {

@@ -423,14 +423,14 @@ class SimdClosings {
     for (int k = 0; k < pieces; ++k) {
       const double p1 = knot_p_[c][k + 1][l], v0 = knot_s_[c][k][l], v1 = knot_s_[c][k + 1][l];
       const bool ends_inside = side * (p1 - level) >= 0;
-      if (side * v0 < 0 && side * v1 > 0 && inside) {  // it moves outwards and turns back: it may be outside between
+      if (side * v0 < 0 && side * v1 > 0 && inside) {  // the point moves outwards, then back: was it outside in between?
         const QuinticPath path = quintic_path(c, k, l, length);
         const double turn = path.turn();
         if (side * (path.position(turn) - level) < 0) return (k + path.meets(level, 0, turn)) / pieces;
       } else if (!ends_inside) {
         const QuinticPath path = quintic_path(c, k, l, length);
         if (inside) return (k + path.meets(level, 0, 1)) / pieces;
-        if (side * v0 > 0 && side * v1 < 0) {  // from the boundary inwards, and back out
+        if (side * v0 > 0 && side * v1 < 0) {  // the point moves inwards from the boundary, then back out
           const double turn = path.turn();
           if (side * (path.position(turn) - level) > 0) return (k + path.meets(level, turn, 1)) / pieces;
         }
@@ -1145,7 +1145,7 @@ class SimdClosings {
   // Begin, value and slope of the drives' signal pieces in the SIMD lanes, and the voltages.
   V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
   V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3 in a drive's signal piece
-  bool curves_[most_drives] = {};             // true once the drive's voltage is not a straight line in any SIMD lane
+  bool curves_[most_drives] = {};             // true once the drive's voltage is curved in some SIMD lane
   // Modal coordinates, velocities and accelerations at the start and the end of a step.
   V q_[capacity], v_[capacity], a_[capacity], trial_q_[capacity], trial_v_[capacity], trial_a_[capacity];
   V slope_q_[7][capacity], slope_v_[7][capacity];
@@ -1164,7 +1164,7 @@ class SimdClosings {
   V until_;      // a lane's closing ends with the first step that ends at or after this time [s]
   V last_step_;  // length of the last step that ended neither at a breakpoint nor at an event [s]
   V growth_, most_growth_, rounds_;
-  V power_, powers_[7], work_{0};  // power of the drives on the modes, now and at the stages of a step [W]; their work so far [J]
+  V power_, powers_[7], work_{0};  // power of the drives on the modes, now and at a step's stages [W]; work so far [J]
   // Error estimate of this step and of the last accepted step, as binary logarithms.
   float log_error_[width] = {}, last_error_[width] = {};
   double moved_[width] = {};

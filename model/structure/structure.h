@@ -56,8 +56,8 @@ struct Structure {
   [[nodiscard]] bool is_rigid() const;
   /// Returns true when the far end of the structure is held, by a clamp or by a compliant anchor.
   [[nodiscard]] bool has_far_clamp() const;
-  /// Return the stiffnesses of the supports at x = 0 and at the far end: those of the beam's anchors if given, otherwise a
-  /// rigid clamp or, at the far end, what the kind of structure has.
+  /// Return the stiffnesses of the supports at x = 0 and at the far end: those of the beam's anchors if given. The default is a
+  /// rigid clamp; at the far end, a clamp or a free end, as the kind has it.
   [[nodiscard]] Anchor near_hold() const;
   [[nodiscard]] Anchor far_hold() const;
   /// Returns true when the size changes along the structure: a beam with sections or layers, or a table of modes with widths.
