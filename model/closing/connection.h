@@ -3,11 +3,11 @@
 // The connection is closed while all of its contacts are closed, or while any of them is (Device::connection). The separation
 // of a contact is the distance of its contact point from the contact plane, negative in contact. The separation of the
 // connection is the largest (or smallest) separation of its contacts; its position is the distance of the first contact from
-// its plane at rest less this separation. Between two knots (points of the simulated motion), one contact decides: the one with
-// the largest (or smallest) separation at both knots. If another contact decides at the second knot, a knot is added at the
-// time at which both contacts have the same separation. The force of the connection is the least (or largest) force of its
-// contacts. A touch (interval in contact) of the connection has the largest force and impact velocity of the touches of its
-// contacts, and the sum of their energies.
+// its plane at rest less this separation. Between two knots (points of the simulated motion), the contact with the largest (or
+// smallest) separation at both knots decides. If another contact decides at the second knot, a knot is added at the time at
+// which both contacts have the same separation. The force of the connection is the least (or largest) force of its contacts. A
+// touch (interval in contact) of the connection has the largest force and impact velocity of the touches of its contacts, and
+// the sum of their energies.
 #pragma once
 
 #include <cstddef>

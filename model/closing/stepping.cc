@@ -232,8 +232,8 @@ bool Stepping::follow(std::optional<Event>& event) {
   return std::ranges::all_of(parts_.contacts, [&](FollowedContact& c) { return follow(c, until, event); });
 }
 
-// Returns the time of the first change of any contact law in the step, or the end of the step. follow() stops at this time: the
-// step is then repeated up to it, so its later motion is not valid.
+// Returns the time of the first change of any contact law in the step, or the end of the step. At this time follow() stops: the
+// later motion is not valid, since the step is repeated up to this time.
 double Stepping::first_event_time() {
   double first = next_.time;
   for (FollowedContact& c : parts_.contacts) {

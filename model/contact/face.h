@@ -50,9 +50,9 @@ namespace softland {
   return 27.0 / 8 * vacuum_permittivity * voltage * voltage / (depth * depth * depth);
 }
 
-/// Returns the voltage [V] up to which the pressure of a dielectric's face keeps parallel plates apart, if their suspension is
-/// relaxed at the height at which the pressure begins. `pressure` is a law of elastic contact per area. `depth` [m] is the sum
-/// of the height at which the pressure begins and the smallest effective gap of the field.
+/// Returns the voltage [V] up to which the pressure of a dielectric's face keeps parallel plates apart. Their suspension is
+/// taken as relaxed at the height at which the pressure begins. `pressure` is a law of elastic contact per area. `depth` [m] is
+/// the sum of the height at which the pressure begins and the smallest effective gap of the field.
 template <class Law>
 [[nodiscard]] double most_face_voltage(const Law& pressure, double depth) {
   double low = 0, high = depth;  // bounds of the depth at which pressure times squared gap is largest [m]

@@ -28,7 +28,7 @@ template <class P>
 struct RigidContactOf {
   P restitution = 0;  ///< coefficient of restitution of an impact
 
-  static constexpr double rest_height = 1e-6;  ///< the plate rests after lower rebounds; as a share of the contact gap
+  static constexpr double rest_height = 1e-6;  ///< rebound height, over the contact gap, below which the plate stays at rest
 
   /// Returns true when a plate that leaves the stop at `speed` [m/s] against `acceleration` [m/s^2] would rebound less than
   /// rest_height times the contact gap, so that it counts as resting.

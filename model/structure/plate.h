@@ -26,8 +26,8 @@ class RigidPlate {
   struct FlatMode {
     [[nodiscard]] Eigen::VectorXd value(double) const { return Eigen::VectorXd::Ones(1); }
     [[nodiscard]] Eigen::VectorXd slope(double) const { return Eigen::VectorXd::Zero(1); }
-    /// Returns the factor 1 between the inverse squared frequencies of held and free plate. A rigid plate that is held at its
-    /// contact cannot move; the free plate's frequency is used, since a rebound takes no longer than the plate's period.
+    /// Returns 1: a plate held at its contact counts as vibrating with the frequency of the free plate. In fact it cannot move;
+    /// the frequency only bounds the duration of a rebound, which takes no longer than the plate's period.
     [[nodiscard]] double pinned_inverse_square(double, std::optional<double> = {}) const { return 1; }
   };
 
