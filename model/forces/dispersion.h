@@ -13,8 +13,8 @@
 // is the smaller one, above it the Casimir law. There is one crossover gap (pi^3 hbar c / (40 A) for ideal conductors, 61 nm at
 // A = 4e-19 J), or none when the Casimir law of a real metal is smaller at all gaps. At the crossover the force is continuous
 // and its slope jumps by a quarter. A run needs no restart there: every quadrature point crosses at its own time and carries a
-// small part of the load, and step size control handles the kink (in tests, the residual of the energy balance of such runs is
-// small).
+// small part of the load, and step size control handles the kink. In tests, the residual of the energy balance of such runs is
+// small.
 #pragma once
 
 #include <cmath>

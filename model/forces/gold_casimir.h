@@ -4,12 +4,12 @@
 //   r_TE = (K - k) / (K + k),  r_TM = (eps K - k) / (eps K + k),  k^2 = K^2 + (eps - 1) u^2,  xi = u c / (2 h)
 //   eps(i xi) = 1 + w_p^2 / (xi (xi + gamma)),  hbar w_p = 9 eV,  hbar gamma = 35 meV
 //
-// xi is the imaginary angular frequency; u, K and k are 2 h times xi / c and times the decay rates of the field in the gap and
-// in gold; r_TM and r_TE are the reflection coefficients of both polarisations, eps the permittivity of gold, w_p its plasma
-// frequency, gamma its relaxation rate. The formula is for zero temperature, without interband terms (they raise the force by
-// some ten per cent below 50 nm). eta is stored as a table from 1 nm to 10 um. A cubic spline in h between the gaps of the
-// table, clamped to the slopes of the integral at the ends, makes force and stiffness smooth; it is within 2e-5 of the
-// integral. Outside the table eta continues with the same value and slope (1 - eta within 1 % at 20 um):
+// The imaginary angular frequency is xi; u is 2 h xi / c, and K and k are 2 h times the decay rates of the field in the gap and
+// in gold. Reflection coefficients are r_TM and r_TE; eps is the permittivity of gold, w_p its plasma frequency, gamma its
+// relaxation rate. The formula is for zero temperature, without interband terms (they raise the force by some ten per cent
+// below 50 nm). eta is stored as a table from 1 nm to 10 um. A cubic spline in h between the gaps of the table, clamped to the
+// slopes of the integral at the ends, makes force and stiffness smooth; it is within 2e-5 of the integral. Outside the table
+// eta continues with the same value and slope (1 - eta within 1 % at 20 um):
 //
 //   h < h_1: eta = n_0 x + n_1 x^2, x = h / h_1      p ~ h^-3, the van der Waals limit
 //   h > h_n: eta = 1 - f_0 x^(-1/2) - f_1 / x, x = h / h_n      the skin depth of a metal with losses grows like h^(1/2)
