@@ -36,7 +36,8 @@ std::array<int, 2> new_pipe() {
   return ends;
 }
 
-// Attributes of a command: signals act as on a command started from a terminal, even signals that this program ignores.
+// Attributes for posix_spawn(): the command gets its own process group and the default action for every signal, also for
+// signals that this program ignores or blocks.
 class SpawnAttributes {
  public:
   SpawnAttributes() {

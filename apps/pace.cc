@@ -30,7 +30,7 @@ void WorkPace::note(std::string_view what, double part, double elapsed) {
 }
 
 std::string WorkPace::words(double elapsed) const {
-  constexpr double least_told = 0.01;  // least share of a stage that must be computed before the remaining time is estimated
+  constexpr double least_told = 0.01;  // share of a stage to compute before its remaining time is estimated
   std::string text = fmt::format("{}: {:.0f} %, {:.0f} s", what_, 100 * std::clamp(part_, 0.0, 1.0), elapsed);
   if (const double done = part_ - first_part_; done >= least_told)
     text += fmt::format(", about {:.0f} s left", std::max(0.0, (elapsed - began_) * (1 - part_) / done));

@@ -1,5 +1,5 @@
-// Estimates the remaining time of a computation. Pace is for an exploration of a design space. It computes some of its points
-// and copies other points from earlier results in almost no time.
+// Estimates the remaining time of a computation. Pace is for an exploration of a design space, in which some points are
+// simulated, and others are copied from earlier results in almost no time. WorkPace is for a computation in stages.
 #pragma once
 
 #include <cstdint>

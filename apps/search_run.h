@@ -25,8 +25,8 @@ namespace softland::apps {
 /// A search that stores its evaluations in a folder and shows its progress.
 class SearchRun {
  public:
-  /// Sets the callbacks of search.options; `search` must outlive this object. `places` are the result folders that the searches
-  /// of several seeds share; null for a single search.
+  /// Sets the callbacks of search.options; `search` must outlive this object. `places` are the result folders that are common
+  /// to searches with several random seeds; null for a single search.
   SearchRun(const Common& common, StoredSearch& search, const std::optional<KnownSearch>& known, const SearchOutput& output,
             SearchPlaces* places = nullptr);
 

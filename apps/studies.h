@@ -6,7 +6,8 @@
 
 namespace softland::apps {
 
-/// A function that runs a verb on the command line, for a verb whose computation differs in the Python module.
+/// A function that runs a verb on the command line and returns the exit status of the program. It is for a verb that the Python
+/// module runs by other code.
 using RunTold = int (*)(const Common&, const verbs::Arguments&);
 
 /// Runs a verb whose computation the command line and the Python module share; returns the exit status of the program.

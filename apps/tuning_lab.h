@@ -18,9 +18,9 @@ namespace softland::apps {
 class TuningLab {
  public:
   virtual ~TuningLab() = default;
-  /// Applies the voltages of a shot and returns the measured times of the contact; none if the user wants no more shots. `sent`
-  /// holds the signals of the shot as the voltage sources receive them. Throws InvalidInput if the laboratory reports no
-  /// measurement, and Interrupted after a signal to stop.
+  /// Applies the voltages of a shot to the device. Returns the measured times at which the contact closes and opens; none if
+  /// the user wants no more shots. `sent` holds the signals of the shot as the voltage sources receive them. Throws
+  /// InvalidInput if the laboratory reports no measurement, and Interrupted after a signal to stop.
   [[nodiscard]] virtual std::optional<ContactRecord> fire(const CommandedShot& shot, const SentSignals& sent) = 0;
   /// Ends the session with the laboratory; no shot follows.
   virtual void finish() {}
@@ -39,7 +39,8 @@ struct HandLabRequest {
   std::filesystem::path folder;
   bool goes_on = false;  ///< true: an earlier tuning in `folder` is continued, and the files of its shots stay
   std::string format = "csv";
-  /// How to read a recorded voltage across the contact; none: the user reports times of the contact.
+  /// Settings for finding, in a recorded voltage across the contact, the times at which the contact closes and opens; none: the
+  /// user reports these times.
   std::optional<ContactTraceKeys> contact = {};
 };
 /// Makes a laboratory in which a person applies the voltages and reports what the device did. The voltages of each shot are

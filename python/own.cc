@@ -18,8 +18,8 @@ namespace py = pybind11;
 namespace {
 
 constexpr std::size_t fewest_intervals = 8, most_intervals = 512, most_known = 64;
-// Accuracy of the polynomials that approximate a voltage, relative to the largest voltage; the polynomials converge so fast
-// that they can be more accurate than own_waveform_accuracy.
+// Wanted error of the polynomials that approximate a voltage, relative to the largest voltage. It is far below the guaranteed
+// own_waveform_accuracy, because the polynomials of a smooth voltage converge fast.
 constexpr double aim = 1e-12;
 
 // Returns Chebyshev point k of the second kind on [begin, end], a cosine of k pi / intervals; point 0 is at the end.

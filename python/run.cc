@@ -15,7 +15,8 @@ namespace {
 
 constexpr int most_nested = 32;
 std::array<std::atomic<std::atomic<bool>*>, most_nested> running{};
-int depth = 0;  // number of nested computations that Python has started; only the main thread uses this number
+// Number of entries of `running` in use: a Python callback of one computation may start another. Only the main thread uses it.
+int depth = 0;
 struct sigaction before {};
 
 bool in_main_thread() { return ::getpid() == static_cast<pid_t>(::syscall(SYS_gettid)); }

@@ -59,7 +59,8 @@ class InterruptibleRun {
 
   [[nodiscard]] const Progress& progress() const { return progress_; }
   [[nodiscard]] const std::atomic<bool>* stop() const { return &stop_; }
-  /// Returns true if a stop was requested by anything but end_by_wish().
+  /// Returns true after Ctrl-C or an exception of a Python function, which end the work without a result; false if a callback
+  /// has ended the work by end_by_wish().
   [[nodiscard]] bool given_up() const { return stop_.load(std::memory_order_relaxed) && !ended_by_wish_; }
   /// For callbacks of the library: throws Interrupted, to end the work, after Ctrl-C or an exception of a Python function.
   void throw_if_given_up() const {

@@ -45,7 +45,7 @@ std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const Prepa
     Drive& driven = own->drives.at(drive);
     if (driven.limits) {
       const Signal commanded = own->commanded(own->drives.place(drive), waveform);
-      // The cubics that approximate a user's own waveform may exceed a voltage limit by this error.
+      // Largest error [V] of the polynomials that approximate a Python function of the voltage: the limits are widened by it.
       const double missed = std::holds_alternative<Own>(waveform) ? own_waveform_accuracy * commanded.peak() : 0;
       const std::string why = violation(commanded, {.min_voltage = driven.limits->min_voltage - missed,
                                                     .max_voltage = driven.limits->max_voltage + missed,
@@ -107,7 +107,7 @@ py::array_t<double> rebounds_of(const std::vector<Rebound>& rebounds) {
   return all;
 }
 
-// The motion of a closing in all modes, from a repeated simulation.
+// The motion of a closing in all modes. The closing has stored only its contact point, so it is simulated again.
 struct Motion {
   RecordedMotion tape;
   std::size_t modes = 0;

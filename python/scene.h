@@ -75,8 +75,8 @@ auto in_keywords(const char* verb, Work&& work) {
   }
 }
 
-/// Runs a verb of verbs/study.h on a scene. `waveforms` are further drive waveforms to evaluate, by name of the set of
-/// waveforms and by drive.
+/// Runs a verb of verbs/study.h on a scene. `waveforms` are sets of drive waveforms to evaluate besides those of the scene: a
+/// dict by name of the set, of dicts by electrode or piezo.
 [[nodiscard]] Outcome study(PyScene& scene, const std::string& verb, const verbs::Arguments& arguments,
                             const pybind11::dict& waveforms, std::string command, const pybind11::object& on_progress);
 

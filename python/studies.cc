@@ -17,7 +17,7 @@ namespace py = pybind11;
 
 namespace {
 
-// Returns the further drive waveforms to evaluate, by the names that the user gives.
+// Converts sets of drive waveforms, which a verb evaluates besides those of the scene, from a Python dict by name of the set.
 std::map<std::string, DriveWaveforms> others_of(const py::dict& given, InterruptibleRun& run) {
   std::map<std::string, DriveWaveforms> others;
   for (const auto& [name, waveforms] : given)

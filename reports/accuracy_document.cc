@@ -97,7 +97,7 @@ Picture picture(const AccuracyStudy& study) {
     add_curve(drawn, work, std::string(to_string(all_integrators[i])), pens[i % pens.size()],
               work_precision(study, study.rows, all_integrators[i]));
     if (all_integrators[i] != own) continue;
-    for (Mark& mark : work.marks) {  // label each tolerance of the integrator at one point only
+    for (Mark& mark : work.marks) {  // only the dots of the integrator of `simulate` are labelled with their tolerance
       for (const AccuracyRow& row : study.rows) {
         const bool shown = row.integrator == own && row.points_per_length == own_points(study) && row.seconds == mark.x;
         if (shown && mark.role == pens[i % pens.size()]) mark.text = internal::scientific(row.tolerance);
@@ -106,8 +106,8 @@ Picture picture(const AccuracyStudy& study) {
   }
   keep(drawn, std::move(work));
 
-  // The curves compare the integrator of `simulate` with one that loses its history of earlier steps at every restart after a
-  // contact.
+  // These curves show what a restart at make and break of contact costs the integrator of `simulate`, and the multistep method
+  // BDF, which loses its earlier steps at every restart.
   Chart contact = logarithmic_chart(
       "contact", "With and without a restart at make and break of contact: largest relative error of " + figures, time, "s", 260);
   contact.caption = restart_text(study);

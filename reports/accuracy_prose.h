@@ -17,8 +17,8 @@ inline constexpr const char* no_quadrature =
 [[nodiscard]] std::string error_cell(double error);
 [[nodiscard]] std::string four_digits(double value, std::string_view unit);
 
-/// Returns the symbols of the well-conditioned or the ill-conditioned figures of merit of the reference run: "t_i, v_i and
-/// B_H".
+/// Returns the symbols of the figures of merit of the reference run that are well-conditioned, or, if `conditioned` is false,
+/// of those that are ill-conditioned: "t_i, v_i and B_H".
 [[nodiscard]] std::string symbols(const AccuracyStudy& study, bool conditioned);
 
 /// Returns the number of quadrature points along the beam as text: "24 points per length"; empty for a rigid plate.

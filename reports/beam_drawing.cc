@@ -84,7 +84,7 @@ class BeamSketch {
       if (d_.contacts[c].side == Side::far) highest = std::max(highest, stop_plane(c));
     }
     constexpr double most_height = 220;
-    // Scale of heights in the view from the side [px/m].
+    // Scale of heights in the view from the side [px/m]; y coordinate of the plane of the electrode [px].
     const double up = most_height / (highest + d_.gap.electrode), ground = top + 20 + most_height;
     const auto y = [&](double above_electrode) { return ground - above_electrode * up; };
     constexpr double least = 2;  // least drawn thickness of a layer [px]
@@ -163,7 +163,8 @@ class BeamSketch {
   [[nodiscard]] double height(double at, bool upper) const {
     return d_.gap.electrode + d_.rest_offset(at) + (upper ? section_at(s_, at).thickness : 0);
   }
-  // Adds the corners of the area between two heights above the lower face of the beam, from position `begin` to `end`.
+  // Appends to `corners` the outline [px] of a part of the beam in the view from the side, from position `begin` to `end` [m].
+  // heights(position) returns the lower and upper end of the part above the lower face of the beam [m].
   template <class ToPixel, class Heights>
   void band(double begin, double end, Corners& corners, ToPixel&& y, Heights&& heights) const {
     const double inside = 1e-9 * s_.length;

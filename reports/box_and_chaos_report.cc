@@ -17,7 +17,8 @@ using DriveRecord = RobustnessRecord::Drive;
 using BoxAndChaosRecord = RobustnessRecord::BoxAndChaosRecord;
 using RangeRecord = BoxAndChaosRecord::Range;
 
-// Largest share of the variance of a figure of merit that a good polynomial chaos model may miss.
+// Largest share of the variance of a figure of merit that polynomial chaos may leave unexplained if the report says that it
+// predicts the figure.
 constexpr double predicted_well = 0.1;
 
 const FigureStatistics& sampled(const DriveRecord& drive, std::string_view key) { return drive.figures[figure_of(key)]; }
@@ -103,8 +104,8 @@ std::string chaos_prose(const BoxAndChaosRecord& ways) {
   return words;
 }
 
-// Describes the device with the extreme value of a figure of merit in the box of varied quantities. The values of the
-// quantities are in SI units, or factors.
+// Describes the device with the extreme value of a figure of merit in the box of varied quantities. Each quantity is given in
+// its SI unit, or as the factor by which it differs from the nominal device.
 BoxAndChaosRecord::InBox in_box(const BoxDevice& device, const PreparedScene& nominal) {
   BoxAndChaosRecord::InBox record{.figure = device.figure,
                                   .values = {},

@@ -72,7 +72,7 @@ std::string text_of(const CheckRecord& record) {
   std::string text = fmt::format("{}: valid{}\n\n", printable_line(record.file), title.empty() ? "" : " (" + title + ")");
   for (const CheckRecord::Line& line : record.lines) text += fmt::format("{:<20} {}\n", line.name, line.value);
   for (const std::string& warning : record.warnings) {
-    if (is_few_summits_warning(warning)) continue;  // the text about the contact contains this warning already
+    if (is_few_summits_warning(warning)) continue;  // the line about the contact states this already
     text += "\n" + wrapped("warning: " + warning) + "\n";
   }
   return text;

@@ -43,33 +43,38 @@ struct Dialect {
   [[nodiscard]] Formula variable(const std::string& name) const { return has_variables ? Formula::named(name) : node(name); }
 };
 
+// A quadrature point of the beam.
 struct Point {
-  // Local gap divided by the rest gap of the contact, and local velocity in contact gaps per tau: sums over the modes.
+  // Local gap divided by the rest gap of the contact, and local velocity in units of contact gap / tau, as formulas: sums over
+  // the modes.
   std::string gap, velocity;
-  std::string load;           // load at a quadrature point of the beam times its quadrature weight, acting on the first mode
-  std::vector<double> share;  // load on each mode divided by the load on the first mode
+  // Formula of the force of the quadrature point (load times quadrature weight), dimensionless as in the equation of dU_i/dt.
+  std::string load;
+  // Factor from `load` to the force on each mode: the mode shape here divided by the first mode shape at the contact.
+  std::vector<double> share;
 };
 
-// The parts of the switch as formulas in one circuit language.
+// The parts of the switch as formulas in one circuit language, in the scaled variables of the equations in circuit_model.h.
 struct Circuit {
   // Names of the pins of electrodes, piezos and dispersion force, as Switch::drives() sorts them.
   std::vector<std::string> drives;
   double tau = 0;  // time scale 1 / omega_1 of the model [s]
   double gap = 0;  // rest gap of the contact [m]
-  // Per mode: (tau omega)^2, 2 zeta tau omega, rest value of the modal coordinate Y, and deflection of the contact per Y.
+  // Per mode i: coefficients (tau omega_i)^2 of Y_i and 2 zeta tau omega_i of U_i in the equation of motion, rest value of Y_i,
+  // and deflection of the contact point, in contact gaps, per Y_i.
   std::vector<double> stiffness, friction, start, at_contact;
-  // Per mode: pins of the piezos, each with its dimensionless force on the mode per volt.
+  // Per mode: pins of the piezos, each with its force on the mode per volt [1/V], dimensionless as in the equation of dU_i/dt.
   std::vector<std::vector<std::pair<std::string, double>>> pushes;
   std::vector<Point> points;
   std::vector<std::pair<std::string, std::string>> charges;  // pins of the electrodes, each with the formula of its charge [C]
-  // Pins of the piezos, each with the factors by which the modal velocities U contribute to its current [A].
+  // Pins of the piezos, each with its current per modal velocity U_i [A], for every mode i.
   std::vector<std::pair<std::string, std::vector<double>>> currents;
-  std::optional<std::string> contact;  // formula of the contact force on the first mode; none for a switch without a contact
-  double force_scale = 0;              // force in newtons at which the scaled contact force is 1
-  // Formulas of the deflection of the contact point in contact gaps, and of its velocity in contact gaps per tau.
+  std::optional<std::string> contact;  // formula of the contact force divided by force_scale; none without a contact
+  double force_scale = 0;              // unit of the dimensionless contact force [N]
+  // Formulas of the deflection of the contact point in contact gaps, and of its velocity in units of contact gap / tau.
   std::string deflection, rate;
-  // Formula of the tension by stretching, then for each mode the factor of the tension in the force on the mode; empty for a
-  // beam that does not stretch.
+  // Formula of the tension that stretching causes in the beam; then, for each mode, the formula that times the tension is the
+  // force on the mode. Empty for a beam that does not stretch.
   std::vector<std::string> tension;
 };
 
@@ -138,7 +143,7 @@ class SubcircuitWriter {
 
   void find_points() {
     std::vector<Formula> charges(device_.electrodes.size(), Formula(0));
-    // Converts a force on the first mode [N] to the dimensionless force in the equation of dU_1/dt.
+    // Factor from a force on the beam [N] to the dimensionless force in the equation of dU_i/dt (Point::load).
     const double scale = c_.tau * c_.tau * unit_ * unit_ / c_.gap;
     for (Eigen::Index p = 0; p < model_.quadrature().points(); ++p) {
       const Eigen::VectorXd shape = model_.quadrature().shapes().row(p).head(model_.modes()) / unit_;
@@ -239,7 +244,7 @@ class SubcircuitWriter {
       pulls.push_back(pull);
     }
     const double scale = s.stiffness * c_.tau * c_.tau * unit_ / c_.gap;
-    // First the tension of the beam, then its factor in the force on every mode.
+    // Circuit::tension: the tension of the beam, then for every mode the formula that makes a force of it.
     c_.tension.push_back((Formula(scale) * strain).text());
     for (const Formula& pull : pulls) c_.tension.push_back(pull.text());
   }
@@ -420,7 +425,7 @@ std::string spice_bench(const PreparedScene& p) {
     pins += " " + pin;
   }
   // Choose the time step of the circuit simulator's trapezoidal rule such that the first mode has an error of 1e-6 and the
-  // fastest mode has 40 steps per period. A single mode permits shorter steps, and a tenth of that error.
+  // fastest mode has 40 steps per period. A model of a single mode is fast enough for shorter steps with a tenth of that error.
   const Eigen::VectorXd& omega = p.model.basis().angular_frequencies();
   const double step = 2 * pi / std::max(40 * omega.maxCoeff(), (omega.size() == 1 ? 8000 : 1500) * omega[0]);
   std::string text = title(p) + "\n" + renamed_in(p, "*") + subcircuit(c) + spice_pwl(driven, p.duration) + sources;

@@ -6,8 +6,8 @@
 // coordinate, phi_1(x_c) the first mode shape at the contact, d_t the contact gap, zeta the damping ratio. Y_1 is about 1 when
 // the switch closes. A capacitor of tau farad holds each Y_i and U_i. The local gap at a quadrature point is a sum over the
 // Y_i. The load at that point is a formula of gap, velocity and voltages of the electrodes; the charge of an electrode is its
-// capacitance times its voltage. Formulas come from the simulator's own code of the laws (reports/formula.h). Below a hundredth
-// of the rest gap, loads keep their value at a hundredth.
+// capacitance times its voltage. Formulas come from the simulator's own code of the laws (reports/formula.h). Where the local
+// gap is below a hundredth of the electrode's rest gap, the load has its value at that hundredth, so that it stays finite.
 #pragma once
 
 #include <string>

@@ -296,7 +296,7 @@ std::string waveform_caption(const ClosingRecord& result, const std::string& dri
 
 std::string search_caption(const ClosingRecord& result, const SearchRecord& search) {
   const std::string whole_name = search.course.value_name.empty() ? "cost" : search.course.value_name;
-  // The name may have an addition, such as ", on the nominal device": the caption needs only "cost".
+  // The name of the minimised value may end with ", on the nominal device" or the like: the caption needs only "cost".
   const std::string name = whole_name.substr(0, whole_name.find(','));
   const double own = result.best.cost;
   double first = std::numeric_limits<double>::quiet_NaN();
@@ -307,8 +307,8 @@ std::string search_caption(const ClosingRecord& result, const SearchRecord& sear
     if (!std::isfinite(first)) first = value;
     if (value >= last) continue;
     last = value;
-    // Find the evaluation of the best waveform. It may not have the lowest cost: a waveform that meets all goals of the search
-    // is preferred.
+    // Find the evaluation of the best waveform: the last improvement to a cost not below its own. Lower costs may follow,
+    // because a waveform that meets all goals of the search is preferred to a waveform of lower cost.
     if (!(last < own)) found_at = index;
   }
   std::string words = capitalised(name) + " of every waveform tried (dots) and of the best so far (line)";

@@ -23,8 +23,8 @@ struct Headline {
 [[nodiscard]] double window_end(const ClosingRecord& record);
 /// Returns the indices of the evaluations that the results of a search list, ascending; the list may leave out evaluations.
 [[nodiscard]] std::vector<double> evaluation_indices(const SearchCourse& course);
-/// Returns the number of evaluations in the list `indices` with an index of at most `index`; `index` itself if the list is
-/// empty.
+/// Returns the number of evaluations up to the evaluation `index`: those in the list `indices`, which may leave out some. With
+/// an empty list, all are assumed to be present: returns `index`.
 [[nodiscard]] double evaluations_until(const std::vector<double>& indices, double index);
 
 /// The functions from gap_caption() to checks_caption() each return one or two sentences as the caption of a chart.

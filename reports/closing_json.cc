@@ -72,7 +72,7 @@ std::map<std::string, std::vector<ClosedStretch>> internal::read_closed_contacts
   return all;
 }
 
-// Each row of JSON is [x, y], where x is a whole number.
+// Writes points of a search as rows [index of an evaluation, minimised value] of JSON, with a whole number as the index.
 json internal::counted_json(const Points& points) {
   json all = json::array();
   for (const auto& [index, value] : points) all.push_back({std::llround(index), json_number(value)});

@@ -9,8 +9,8 @@
 namespace softland::internal {
 namespace {
 
-/// Estimated errors of figures (half a bounce, a relative error of a time) beyond which a figure is quoted with "about". If the
-/// error is unknown, a figure after more than a few rebounds is also quoted with "about".
+/// Estimated errors beyond which a figure of merit is quoted with "about": absolute error of the bounce count, relative error
+/// of the settling time. If the error is unknown, "about" stands when the closing has more than `few_rebounds` bounces.
 constexpr double doubtful_count = 0.5;
 constexpr double doubtful_time = 0.01;
 constexpr double few_rebounds = 5;

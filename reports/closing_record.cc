@@ -131,7 +131,7 @@ void keep_most_rows(CurveRecord& c) {
   }
 }
 
-// Reduces the rebounds to the highest ones, in the order of time.
+// Keeps the most_rebounds highest rebounds, in the order of time.
 void keep_highest(std::vector<Rebound>& all) {
   if (all.size() <= most_rebounds) return;
   std::ranges::nth_element(all, all.begin() + most_rebounds, std::ranges::greater(), &Rebound::height);
@@ -183,7 +183,7 @@ CurveRecord curve_of(const Trajectory& t, const std::vector<Rebound>& all_reboun
 std::vector<ClosedStretch> closed_stretches(const std::vector<Touch>& touches, std::size_t most) {
   std::vector<double> openings;
   for (std::size_t k = 1; k < touches.size(); ++k) openings.push_back(touches[k].begin - touches[k - 1].end);
-  // The contact counts as closed across openings up to this duration [s].
+  // Longest opening [s] across which two touches become one time span, so that at most `most` spans remain; -infinity: none.
   double joined = -std::numeric_limits<double>::infinity();
   if (touches.size() > most) {
     std::vector<double> by_length = openings;

@@ -62,10 +62,12 @@ struct ClosingRecord {
   [[nodiscard]] const DevicesFindings* devices() const { return search && search->devices ? &*search->devices : nullptr; }
 };
 
-/// Returns the motion of a run: the points between integrator steps, and interpolated points where steps are long. A long run
-/// keeps the most_curve_rows points that draw the same picture, with all extremes, and its most_rebounds highest rebounds.
+/// Returns the motion of a run at the contact point: the end points of the integrator's steps, and interpolated points within
+/// long steps. Of a long run, at most most_curve_rows points stay, which draw the same picture with all extremes, and the
+/// most_rebounds highest rebounds.
 [[nodiscard]] CurveRecord curve_of(const Trajectory& trajectory, const MetricsOptions& options);
-/// Returns the motion of a run whose rebounds are known. If `is_thinned`, no points are added between those of the trajectory.
+/// Returns the motion of a run with `rebounds`, which the trajectory need not show. If `is_thinned`, points are missing in the
+/// trajectory, and none are interpolated.
 [[nodiscard]] CurveRecord curve_of(const Trajectory& trajectory, const std::vector<Rebound>& rebounds, bool is_thinned,
                                    const MetricsOptions& options);
 
@@ -97,7 +99,8 @@ struct ClosingRecord {
 /// Returns the results of a closing as --json writes them: without large parts (curves, the text of the scene, the log of the
 /// search) and without repetitions.
 [[nodiscard]] nlohmann::json summary_json(nlohmann::json record);
-/// Returns status and figures of merit of a run as JSON, except figures that the waveforms alone determine.
+/// Returns status and figures of merit of a run as JSON, except figures of the drive waveforms themselves, such as the peak
+/// voltage.
 [[nodiscard]] nlohmann::json metrics_json(const Metrics& metrics);
 
 /// Parses the content of a result.json: an object of kind "simulate" or "optimize"; all other members may be missing or of

@@ -30,7 +30,7 @@ using nlohmann::json;
 constexpr std::size_t most_of_course = 4000;  // largest number of points in a drawn curve of the gap over the cycles
 // Largest error of the piecewise linear waveforms in the report, as a share of the peak voltage.
 constexpr double line_tolerance = 1e-4;
-constexpr std::size_t told_cycles = 3;  // number of cycles in the report: the first cycles, and the last one
+constexpr std::size_t told_cycles = 3;  // number of first cycles in the table of the report, which also has the last cycle
 constexpr std::size_t most_drawn_cycles = 200;
 
 CycleRecord::Devices devices_of(const CycledDrive& drive, double rate) {

@@ -28,7 +28,8 @@ bool is_drawable(const DevicesFindings::Courses& courses) {
   return instants > 1 && std::ranges::all_of(courses.step, has_all) && std::ranges::all_of(courses.own, has_all);
 }
 
-// Returns a table of contact gaps over time with the columns "time", "low", "high", "median" and one for each device.
+// Returns a table of contact gaps over time with the columns "time", "low" (5th percentile over the devices), "high" (95th),
+// "median", and one for each device.
 CurveTable courses_table(const DevicesFindings::Courses& courses, const std::vector<std::vector<int>>& gaps) {
   CurveTable table;
   const std::size_t instants = gaps.front().size();

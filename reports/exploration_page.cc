@@ -152,7 +152,7 @@ Choice chosen_points(const ExplorationReport& report, const std::optional<Explor
       }
       how = stride_prose(report, *grid, choice.strides);
     } else {
-      // Choose each point at random with the same probability, wherever it is in the list of the exploration's points.
+      // Points that are no grid, such as a random sample, are thinned at random. Probability with which a point is drawn:
       const double part = static_cast<double>(most) / static_cast<double>(count);
       for (std::size_t k = 0; k < count; ++k)
         kept[k] = static_cast<char>(random_uniform(0, Stream::scene, static_cast<std::uint64_t>(report.points[k].number)) < part);
@@ -177,8 +177,8 @@ nlohmann::json grid_json(const ExplorationReport& report, const ExploredGrid& gr
     for (std::size_t k = 0; k < grid.values[d].size(); k += choice.strides[d]) values.push_back(grid.values[d][k]);
     out["values"].push_back(std::move(values));
   }
-  // Write the grid cell of each point as the difference from the cell of the point before it, which takes few digits; a
-  // negative cell is not in the thinned grid.
+  // A cell is the position of a point in the thinned grid, counted with the last variable fastest; -1 for a point of the Pareto
+  // front that the thinned grid lacks. Cells are written as differences from the cell before, which take few digits.
   nlohmann::json cells = nlohmann::json::array();
   long expected = 0, before = 0;
   bool in_order = true;
@@ -340,7 +340,7 @@ std::vector<EffectBin> effect_of(const ExplorationReport& report, std::size_t va
       pairs.emplace_back(point.values[variable], point.values[figure]);
   }
   std::sort(pairs.begin(), pairs.end());
-  // Points with equal values of the variable belong to one group.
+  // Ranges [begin, end) of `pairs` with equal values of the variable, which must not be divided between two bins.
   std::vector<std::pair<std::size_t, std::size_t>> groups;
   for (std::size_t begin = 0; begin < pairs.size();) {
     std::size_t end = begin;
@@ -393,8 +393,8 @@ std::size_t leading_figure(const ExplorationReport& report) {
 
 ExplorationData exploration_data(const ExplorationReport& report, const std::optional<ExploredGrid>& grid,
                                  const ExploredFront& front) {
-  // Number of values stored per point beside the columns: status and reason take as much space as 1.5 columns, number and
-  // coordinates as two.
+  // Number of values that a page stores per point. Status and reason take the space of about two columns, and so do number and
+  // coordinates of a point that is in no grid. Every column that varies is added.
   std::size_t stored = grid ? 2 : 4;
   for (std::size_t c = 0; c < report.columns.size(); ++c) {
     const ColumnRange range = range_of(report, c);

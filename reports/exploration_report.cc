@@ -341,7 +341,8 @@ std::vector<std::size_t> grid_variables(const ExplorationReport& report) {
 std::string exploration_map_svg(const ExplorationReport& report, std::size_t x, std::size_t y, std::size_t figure) {
   const std::optional<internal::ExploredGrid> grid = internal::grid_of(report);
   require(grid.has_value(), "a map needs points on a grid of at least two variables");
-  // A map with more cells, of some 30 bytes each, gains nothing visible and makes the file slow to open.
+  // Largest number of cells of a drawn map. More cells, of some 30 bytes each, would not be visible and make the file slow to
+  // open.
   constexpr std::size_t most_cells = 40'000;
   const internal::HeatMap map = internal::thinned_map(internal::heat_map_of(report, *grid, x, y, figure), most_cells);
   return svg_frame(fmt::format("{} over {} and {}", map.label, report.columns[x].name, report.columns[y].name), report.title,

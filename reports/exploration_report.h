@@ -41,8 +41,8 @@ struct ExplorationReport {
 /// before the last rebound.
 [[nodiscard]] bool has_figures(std::string_view status);
 
-/// The Pareto front of several figures of merit to minimise or maximise, among all points that have these figures and a status
-/// that permits comparison.
+/// The Pareto front of several figures of merit to minimise or maximise, among all points that have these figures and the
+/// status "done". A point whose switch still bounced at the end of the simulation cannot be on the front.
 struct ExploredFront {
   /// Indices in the report of the points on the front, sorted by the first aim (figure to minimise or maximise).
   std::vector<std::size_t> members;

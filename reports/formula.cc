@@ -51,7 +51,7 @@ Formula operator*(const Formula& a, const Formula& b) {
 Formula operator/(const Formula& a, const Formula& b) {
   if (a.constant_ && b.constant_) return a.value_ / b.value_;
   if (b.constant_) return a * Formula(1 / b.value_);
-  // ngspice adds 1e-32 to a divisor, although a divisor may be smaller than that; a power of -1 is exact.
+  // Write a quotient as a product with a power of -1: ngspice adds 1e-32 to every divisor, and a divisor may be smaller.
   return a * pow(b, -1);
 }
 

@@ -104,7 +104,8 @@ ReportTable touches_table(const LimitRecord& limit) {
   return table;
 }
 
-// Adds the columns x and y of a curve to a table; leaves out values that were not found.
+// Adds the curve of the least closing time over a limit, such as the peak voltage, as the columns "x" and "time" of a table.
+// x(least) returns the value of the limit. A value without a result is left out.
 template <class X>
 void add_curve(internal::CurveTables& tables, const std::string& name, const std::vector<LeastTime>& all, X x) {
   for (const LeastTime& least : all) {
@@ -116,7 +117,7 @@ void add_curve(internal::CurveTables& tables, const std::string& name, const std
 
 internal::Chart curve(const std::string& table, const std::string& title, const std::string& x_label, const std::string& x_unit,
                       const internal::CurveTable& columns) {
-  constexpr double beside = 0.1;  // space beside a curve that has points at a single x only, as a share of x
+  constexpr double beside = 0.1;  // half width of the x axis around a curve of a single point, as a share of its x
   const auto [low, high] = std::minmax_element(columns.at("x").begin(), columns.at("x").end());
   const double around = *low < *high ? 0 : beside * *low;
   internal::Chart chart{

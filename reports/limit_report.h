@@ -27,7 +27,8 @@ struct LimitRecord {
   struct Landing {
     LeastTime path;
     bool at_rest = false;
-    /// Times from first contact to the voltages that keep the switch closed, and to the hold levels [s].
+    /// The pulse that keeps the switch closed after a touch: times from the first contact to the begin of the pulse, and to its
+    /// end, when the drives go to their hold levels [s].
     double catch_delay = Metrics::unset, catch_time = Metrics::unset;
     bool bounce_free = false;
     Metrics metrics;

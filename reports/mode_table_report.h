@@ -16,7 +16,7 @@ namespace softland {
 struct ModesRecord {
   struct Mode {
     int number = 0;  ///< number of the mode in the file of modes
-    /// Frequency of the mode [Hz]; share of the mode's kind (bending, in-plane, ...) in the squared motion of all nodes.
+    /// Frequency of the mode [Hz]; share of the squared motion of all nodes that is of the mode's kind: bending, in-plane, ...
     double frequency = 0, share = 0;
     std::string kind;
     std::string taken_as;  ///< name in the table that a scene reads, such as "mode_2"; empty for a mode that is left out

@@ -22,8 +22,8 @@ namespace {
 using nlohmann::json;
 
 constexpr double travel = 130;  // distance from the electrode to the highest position of the beam [px]
-constexpr double right_end = 520, detail_left = 650,
-                 detail_wide = 150;  // right end of the moving part; left end and width of the enlarged picture beside it [px]
+// Right end of the moving part; left end and width of the enlarged picture of the contact beside it [px].
+constexpr double right_end = 520, detail_left = 650, detail_wide = 150;
 constexpr double figure_width = 820;
 constexpr double detail_top = 6, contact_wide = 12;
 

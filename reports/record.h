@@ -68,7 +68,7 @@ void require_same(const json& written, const json& read);
 class JsonWriter {
  public:
   static constexpr bool reads = false;
-  /// Returns `where`, the condition under which the record has certain members: a writer writes them only then.
+  /// Returns the condition `where`, under which members() lists further members of the record. A reader lists them in any case.
   [[nodiscard]] static bool has(bool where) { return where; }
 
   template <class T>

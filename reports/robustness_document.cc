@@ -107,8 +107,8 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
   return chart;
 }
 
-// Draws a histogram of a figure of merit over the devices. All sets of waveforms share the bins, over the range of the
-// cumulative curves. Two kinds of closings appear as two peaks.
+// Draws a histogram of a figure of merit over the devices, with the same bins for all sets of waveforms, over the range of the
+// cumulative curves. It shows what these hide: two peaks if some devices close in another way than the others.
 internal::Chart histogram_chart(const RobustnessReport& report, std::string_view key, const internal::Chart& cumulative,
                                 internal::CurveTables& tables) {
   const Figure& f = figure_of(key);

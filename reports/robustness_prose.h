@@ -31,8 +31,8 @@ namespace softland::internal {
 /// Describes the hold voltages that keep 99 % of the devices closed; empty if they are unknown.
 [[nodiscard]] std::string window_prose(const HoldWindows& windows);
 
-/// Returns the varying quantities of device k for display: in SI units or as factors; jitter as the random time of the first
-/// edge [s].
+/// Returns the varying quantities of device k for display: in SI units, or as factors of the nominal value. The jitter of the
+/// voltage source is shown as the random time shift of the waveform's first edge [s].
 [[nodiscard]] std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k);
 /// Returns true if a table has a row for this figure of merit of device_figures. A figure that no closing device has, such as
 /// the peak force on a rigid contact, has no row.
@@ -46,8 +46,8 @@ inline constexpr std::string_view worst_prose =
 
 /// Returns a Sobol' index clamped to [0, 1], which its estimate may leave by chance.
 [[nodiscard]] inline double share_of(double index) { return std::clamp(index, 0.0, 1.0); }
-/// Returns the reason why a figure of merit has no Sobol' indices. The indices need simulations of other devices than the
-/// sample, in `rows` rows; some of these devices may stay open although all devices of the sample close.
+/// Returns the reason why a figure of merit has no Sobol' indices. The indices need simulations of devices that are not in the
+/// sample, in `rows` groups, of which `failed_rows` have a device without the figure.
 [[nodiscard]] std::string why_no_indices(std::size_t rows, std::size_t failed_rows);
 
 }  // namespace softland::internal

@@ -146,8 +146,8 @@ struct RobustnessRecord {
 [[nodiscard]] Document document_of(const RobustnessRecord& record);
 
 /// Returns CSV with a line per device: its number, the varying quantities, and status and figures of merit under every set of
-/// waveforms. A quantity is in SI units or a factor; jitter is the time of the first edge. A figure that a device does not have
-/// is empty.
+/// waveforms. A quantity is in SI units, or a factor of the nominal value; jitter is the random time shift of the first edge of
+/// the waveform [s]. A figure that a device does not have is empty.
 [[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
 
 /// Returns a document with statistics, cumulative distributions and histograms, the closings of typical devices, and every

@@ -34,8 +34,8 @@ struct CurveRecord {
   /// Resistance of the connection, NaN while the connection is open [Ohm]; empty if the contacts have no resistivity.
   std::vector<double> resistance = {};
   std::vector<Rebound> rebounds;
-  std::optional<std::vector<ClosedStretch>> closed = {};  ///< times in which the contact, or the connection of several
-                                                          ///< contacts, is closed
+  /// Times in which the contact is closed; of several contacts, times in which their electrical connection is closed.
+  std::optional<std::vector<ClosedStretch>> closed = {};
   std::map<std::string, std::vector<ClosedStretch>> closed_contacts = {};  ///< times in which each contact is closed, by name
   std::optional<ShownMotion> motion = {};  ///< motion of the whole structure; none if the run stopped early
 };

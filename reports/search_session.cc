@@ -37,7 +37,8 @@ ResultFolder claimed(const SearchOutput& output, const StoredSearch& search, con
   if (stays) kept = {evaluations_file};
   if (stays && search.seeds > 1) kept.emplace_back(seeds_file);
   ResultFolder folder = output.claim(files_of_searches(), kept);
-  // Another run may have moved the database file of the search to continue before the current run locked the folder.
+  // The database file of the search to continue was found before this run locked the folder: another run may have moved it
+  // since.
   require_request(!known || is_store(known->place / evaluations_file), [&] {
     return fmt::format("{}: {} was removed; try again", requested("resume"), (known->place / evaluations_file).string());
   });

@@ -48,7 +48,7 @@ class SearchPlaces {
   [[nodiscard]] EvaluationStore& evaluations() { return evaluations_; }
   /// Returns the path of the database file `name` of the search, other than that of the evaluations.
   [[nodiscard]] std::filesystem::path store(const std::string& name);
-  /// Returns true if the database files are, or will be, in the folder `place`.
+  /// Returns true if the database files will be in the folder `place` at the end of the run.
   [[nodiscard]] bool stores_go_to(const std::filesystem::path& place) const { return !kept_ || place == folder_.path(); }
 
  private:

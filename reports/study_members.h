@@ -13,7 +13,8 @@
 
 namespace softland {
 
-/// Lists status and figures of merit of a run as members for JSON, except figures that the waveforms alone determine.
+/// Lists status and figures of merit of a run as members for JSON, except figures of the drive waveforms themselves, such as
+/// the peak voltage.
 template <class A>
 void members(A& a, Metrics& metrics) {
   FigureValues values(metrics);

@@ -69,8 +69,8 @@ inline constexpr std::size_t longest_line = std::size_t{16} << 20;
 [[nodiscard]] nlohmann::json record_json(int shot, const ContactRecord& record);
 [[nodiscard]] nlohmann::json end_json();
 /// Returns candidate waveforms for the log of a tuning as JSON, whose numbers keep all bits:
-/// {"recipes":[{"x":[...],"volts":1,"time":1,"cost":0.8}]}. The list x has the waveform parameters; volts and time are factors
-/// of the devices for which the waveform was optimised.
+/// {"recipes":[{"x":[...],"volts":1,"time":1,"cost":0.8}]}. The list x has the waveform parameters; volts and time are the
+/// units of voltage and time of the devices for which the waveform was optimised, divided by those of the nominal device.
 [[nodiscard]] nlohmann::json recipes_json(const std::vector<CandidateWaveform>& recipes);
 [[nodiscard]] std::vector<CandidateWaveform> read_recipes(const nlohmann::json& line);
 /// Returns the JSON as a line with line feed; bytes that are not UTF-8 become U+FFFD.

@@ -87,7 +87,7 @@ std::pair<std::string, std::string> headline_of(const TuningReport& report) {
   return {fmt::format("After {} none was bounce-free.", after), ""};
 }
 
-// The functions from here on are for the web page.
+// The functions from here to keys_of() make the sections and drawings of the web page.
 
 // Width of the drawing of a contact's closed times as bars; a page scales the drawing.
 constexpr double strip_width = 1000;

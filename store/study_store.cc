@@ -198,7 +198,9 @@ void StudyStore::Implementation::open() {
 void StudyStore::Implementation::start_session(const StoredOrigin& origin, bool resumed) {
   const NumberedPlan there = current_plan(*database_);
   require_same_columns(*database_, there.plan, plan_);
-  plan_.columns = there.plan.columns;  // all plans of a store share its table of columns, with the names of the first version
+  // All plans of a database file share its table of columns. The columns keep the names that the version of the program which
+  // created the file gave them.
+  plan_.columns = there.plan.columns;
   number_ = number_of_plan(*database_, plan_.text);
   read_done();
   database_->run(fmt::format("PRAGMA journal_mode = {}; PRAGMA synchronous = FULL", journal_at(path_)));

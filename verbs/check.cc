@@ -227,7 +227,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
   add_rest_shape(record, p.scene.device);
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
-  // Pull-in voltages by electrode: a search takes the missing voltage limits of the scene from them.
+  // Pull-in voltages by electrode: a search derives its voltage limits from them where the scene gives no limits.
   std::map<std::string, PullInVoltages> searched_to;
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const std::string& name = p.scene.device.electrodes[k].name;

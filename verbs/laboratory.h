@@ -12,8 +12,8 @@ namespace softland::verbs {
 /// Errors of laboratory instruments; an error that the user does not give has a default, which depends on the scene.
 struct ToldErrors {
   std::optional<double> edge_error = {}, unseen = {}, gain_error = {}, shot_error = {};
-  std::optional<double> trigger_delay =
-      {};  ///< standard deviation of the delay between drives and contact records; an option of `tune` only
+  /// Standard deviation of the delay between drive waveforms and contact records [s]; an option of `tune` only.
+  std::optional<double> trigger_delay = {};
   /// Threshold of the capacitance from which on the contact counts as closed, for an instrument that measures the capacitance
   /// [F].
   std::optional<double> capacitance = {};

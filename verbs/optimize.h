@@ -20,8 +20,8 @@ struct OptimizeRequest : SearchRequest {
   std::string cycle = {};  ///< cycle rate for which closing and opening waveforms are searched, "2 kHz"; see the verb `cycle`
   std::string duty = {};   ///< share of the cycle in which the switch is commanded closed
   bool resume = false;
-  bool limit = false;  ///< true: compare the best waveform with the least closing time of any waveform, even if that takes
-                       ///< minutes
+  /// True: compare the best waveform with the least closing time of any waveform, even if that computation takes minutes.
+  bool limit = false;
 };
 /// Reads the options of `optimize` from the arguments. Throws InvalidRequest for invalid options; options of SearchRequest are
 /// checked later (search_request.h).

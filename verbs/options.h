@@ -45,9 +45,9 @@ struct OptionRow {
     text,
     flag,
     repeated,
-    further,
-    object
-  };  ///< kinds of options; further: arguments after the scene; object: a Python object without a text form
+    further,  ///< any number of arguments after the scene
+    object    ///< a Python object, which has no text form
+  };
   enum class Door { both, program, python };
 
   /// Name such as "impact-velocity", word such as "SPEED" for the value; `about` is the help, which begins in lower case.

@@ -27,7 +27,7 @@
 namespace softland::verbs {
 namespace {
 
-constexpr double most_bias = 1e6;  // largest voltage of --bias [V]
+constexpr double most_bias = 1e6;  // largest voltage that --bias and --sweep accept [V]
 
 // Returns the rule that a message states about a voltage given on the command line.
 std::string voltage_rule() {
@@ -137,8 +137,8 @@ void add_sweep(PullInsRecord& record, const PreparedScene& p, const SweepRange& 
   record.sweep = static_sweep(p.model, drive, bias_of(p.scene, drive), range, progress);
 }
 
-// Returns `done`, or the status of the first pulling electrode for which no pull-in voltage was found. A single electrode gives
-// its own status.
+// Returns `done`, or the status of the first electrode that pulls towards the contact and for which no pull-in voltage was
+// found. With a single electrode, the status is that of this electrode, wherever it pulls.
 Status status_of(const PreparedScene& p, const PullInsRecord& record) {
   if (record.electrodes.size() == 1) return record.electrodes.begin()->second.status;
   const auto& electrodes = p.scene.device.electrodes;
@@ -192,7 +192,8 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   try {
     progress.throw_if_stopped();
     if (!leaves_choices) {
-      // The bias: voltages of the other drives while that of an electrode varies, including the values of --bias.
+      // Keep the bias, the constant voltages of the other drives while that of an electrode varies: prepare() knows only the
+      // scene, not the values of --bias.
       const std::vector<double> standing = prepared.scene.standing;
       prepared = prepare(file, false, progress, find_pull_in);
       prepared.scene.standing = standing;
@@ -211,7 +212,7 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
     record.left_out.push_back(record.sweep.empty() ? "the sweep"
                                                    : fmt::format("the sweep beyond its first {} points", record.sweep.size()));
   record.origin = origin_of("pull-in", setting.command);
-  // After an interruption the scene in volts may not be known yet.
+  // The resolved scene has all voltages in volts. After an interruption they may not be known yet: record the scene as given.
   record.origin.scene = interrupted ? file.json() : prepared.resolved().json();
   record.status = to_string(interrupted ? Status::interrupted : status_of(prepared, record));
   Outcome outcome = shown(record);

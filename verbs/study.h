@@ -70,8 +70,8 @@ struct Takes {
 
 struct Study {
   const char *name, *about;
-  const char *python, *returns,
-      *progress;  ///< name of the verb's method of a scene in Python, type of its result, default of its argument `progress`
+  /// The verb's method of a scene in Python: its name, the type of its result, and the default of its argument `progress`.
+  const char *python, *returns, *progress;
   const char* in_python;        ///< further text of the docstring of the verb's method in Python
   const char *subject, *scene;  ///< word for the scene in --help, and description of the scene
   Takes takes;

@@ -19,7 +19,7 @@ namespace softland::apps {
 namespace {
 
 struct StarterScene {
-  std::string_view name, scene;  // name for the verb `new`; file of the shipped scene
+  std::string_view name, scene;  // name by which the user requests the scene; file of this shipped scene
 };
 constexpr std::array starter_scenes{StarterScene{"cantilever", "mem-gold.toml"},
                                     StarterScene{"cantilever-pzt", "mem-gold-pzt.toml"},

@@ -99,10 +99,10 @@ struct Asked {
 };
 
 // Returns true if computing the least closing time (verb `limit`) takes a second or two, which is short beside the search. The
-// computation is much longer with a slew limit, and with more than four modes of a cantilever, whose highest frequency is then
-// more than 34 times the lowest.
+// computation is much longer with a slew limit, and with many modes: their number is judged by the ratio of the highest natural
+// frequency to the lowest, which for a cantilever is 34 with four modes and 57 with five.
 bool takes_little(const Asked& asked, const OptimizeResult& result) {
-  // Largest ratio of the highest natural frequency of the modes to the lowest at which computing the limit is quick.
+  // Largest ratio of the highest natural frequency to the lowest at which computing the least closing time is quick.
   constexpr double widest_band = 40;
   const Eigen::VectorXd& omega = result.best_scene->model.basis().angular_frequencies();
   return asked.search.options.max_evaluations >= verbs::evaluations_worth_a_limit &&
@@ -116,7 +116,9 @@ bool takes_little(const Asked& asked, const OptimizeResult& result) {
 std::optional<TouchLimit> limit_of(const Asked& asked, const OptimizeResult& result) {
   if (!result.best || result.search.termination == Termination::interrupted) return std::nullopt;
   if (!asked.limit && !takes_little(asked, result)) return std::nullopt;
-  constexpr double softest = 1e-3;  // least permitted impact velocity, as a share of that under the plain step
+  // Least value of the permitted impact velocity in the computation of the limit, as a share of the impact velocity under the
+  // plain step: the found waveform may touch at a velocity of nearly 0.
+  constexpr double softest = 1e-3;
   const double own = result.best->metrics.impact_velocity, step = result.baseline.metrics.impact_velocity;
   if (!std::isfinite(own)) return std::nullopt;
   const double velocity = std::isfinite(step) ? std::max(own, softest * step) : own;
@@ -143,7 +145,7 @@ std::string words_on_devices(const Asked& asked, const SearchReport& report, con
   return on_devices(asked.c, *found.best().best_scene, asked.search.options.jobs, place);
 }
 
-// Returns the names of the pages and the scenes among `files`, and the number of the other files.
+// Shortens a list of written files for the terminal: the names of pages and scenes stay, the others become "and 12 more".
 std::vector<std::string> foremost(std::vector<std::string> files) {
   const auto others = std::ranges::stable_partition(
       files, [](const std::string& name) { return name.ends_with(".html") || name.ends_with(".toml"); });
@@ -185,7 +187,8 @@ int run_search(const Asked& asked) {
   return status_of(report.found);
 }
 
-// Returns the completed searches of all seeds and ranks them; rebounds below `significant` [m] do not count.
+// Returns the completed searches of all seeds with the index of the best one, by the criteria of rank() (seeds_report.h);
+// rebounds below `significant` [m] do not count.
 SeedsFindings ranked(const SeedStudy& study, const StoredSearch& search, double significant) {
   SeedsFindings seeds{.planned = search.seeds, .searches = study.searches()};
   if (!seeds.searches.empty()) rank(seeds, search.options.target, significant, search.robust.has_value());

@@ -24,7 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t most_tasks = 100'000;  // largest number of jobs in one array of jobs; exceeds the limit of any cluster
+// Largest number of jobs that the user may request in one array of jobs; it exceeds what any cluster permits.
+constexpr std::uint64_t most_tasks = 100'000;
 
 struct SlurmRequest {
   std::string plan;

@@ -79,7 +79,7 @@ std::vector<Column> columns_of(const StoredPlan& plan) {
 std::vector<Column> selected(const StoredPlan& plan, const std::string& select) {
   std::vector<Column> all = columns_of(plan);
   if (select.empty()) return all;
-  // The columns `content` and `extra` are printed only if --select names them.
+  // The columns `content` (a hash of the scene) and `extra` (JSON) have long cells: print them only if --select names them.
   all.push_back(text_column("content", [](const StoredRow& row) { return row.content.hexadecimal(); }));
   all.push_back(text_column("extra", [](const StoredRow& row) { return row.extra; }));
   std::vector<Column> chosen;

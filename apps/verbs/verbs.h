@@ -1,5 +1,5 @@
-// Verbs that run differently on the command line than in Python, and verbs that only the command line has, in the order of
-// --help. Each has a file in this folder, with options and action.
+// Verbs that the command line runs by other code than Python does, and verbs that only the command line has, in the order of
+// --help. Each verb has a file in this folder, with its options and its action.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ void add_read(Verb& verb);
 /// Makes the text of the verb `modes` again from its JSON, for the verb `report`. Throws InvalidInput for other JSON.
 [[nodiscard]] verbs::Outcome modes_shown_again(const nlohmann::json& json);
 
-// Actions of the verbs that verbs/study.h describes without a computation.
+// Actions of the verbs whose description in verbs/study.h has no computation: each returns the exit status of the program.
 [[nodiscard]] int run_optimize(const Common& common, const verbs::Arguments& arguments);
 [[nodiscard]] int run_explore(const Common& common, const verbs::Arguments& arguments);
 [[nodiscard]] int run_tune(const Common& common, const verbs::Arguments& arguments);
