@@ -84,7 +84,7 @@ std::pair<double, std::string> SearchProgress::state(double elapsed) const {
   std::string state = of_;
   state += timed ? fmt::format("{:.0f} of {:g} s, {} {}", elapsed, seconds_, progress_.evaluations, counted_)
                  : fmt::format("{} of {} {}, {:.0f} s", progress_.evaluations, budget_, counted_, elapsed);
-  constexpr long telling = 100;  // the remaining time of a search is estimated once 1/100 of its budget is used
+  constexpr long telling = 100;  // the remaining time is shown once 1 / telling of the budget of evaluations is used
   if (!timed && progress_.evaluations > budget_ / telling && progress_.evaluations < budget_) {
     const auto done = static_cast<double>(progress_.evaluations);
     state += fmt::format(", about {:.0f} s left", elapsed * (static_cast<double>(budget_) - done) / done);

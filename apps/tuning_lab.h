@@ -22,7 +22,7 @@ class TuningLab {
   /// the user wants no more shots. `sent` holds the signals of the shot as the voltage sources receive them. Throws
   /// InvalidInput if the laboratory reports no measurement, and Interrupted after a signal to stop.
   [[nodiscard]] virtual std::optional<ContactRecord> fire(const CommandedShot& shot, const SentSignals& sent) = 0;
-  /// Ends the session with the laboratory; no shot follows.
+  /// Tells the laboratory that no further closing of the device follows.
   virtual void finish() {}
 
  protected:
@@ -37,7 +37,7 @@ class TuningLab {
 
 struct HandLabRequest {
   std::filesystem::path folder;
-  bool goes_on = false;  ///< true: an earlier tuning in `folder` is continued, and the files of its shots stay
+  bool goes_on = false;  ///< true: continue an earlier tuning in `folder`, and keep its files of waveforms (shot-N.csv)
   std::string format = "csv";
   /// Settings for finding, in a recorded voltage across the contact, the times at which the contact closes and opens; none: the
   /// user reports these times.

@@ -158,13 +158,13 @@ std::vector<double> PythonWaveform::breakpoints(std::span<const double> x) const
 
 double PythonWaveform::voltage(double time, std::span<const double> x) const {
   const auto known = course(x);
-  if (known->arcs.empty()) {  // the waveform has no breakpoints: its voltage is constant
+  if (known->arcs.empty()) {  // without breakpoints the waveform is constant: one call gives its voltage
     const py::gil_scoped_acquire held;
     return called({time}, x)[0];
   }
   const auto after =
       std::upper_bound(known->arcs.begin(), known->arcs.end(), time, [](double t, const Arc& arc) { return t < arc.end; });
-  if (after == known->arcs.end()) {  // after the last breakpoint the voltage is constant
+  if (after == known->arcs.end()) {  // after its last breakpoint the waveform is constant
     const py::gil_scoped_acquire held;
     return called({time}, x)[0];
   }

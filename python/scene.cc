@@ -28,7 +28,7 @@ namespace py = pybind11;
 std::shared_ptr<const PreparedScene> PyScene::ready(bool default_limits, InterruptibleRun& run) {
   std::shared_ptr<const PreparedScene>& kept = default_limits ? limited : plain;
   if (!kept) {
-    const SceneFile copy = file;  // another Python thread may change the scene meanwhile
+    const SceneFile copy = file;  // another Python thread may change `file` while this thread prepares the scene
     kept = run([&](const Progress& progress) {
       return std::make_shared<const PreparedScene>(prepare_and_choose(copy, default_limits, progress));
     });
@@ -68,7 +68,7 @@ void change(SceneFile& file, const std::string& key, const Value& value) {
     if (const auto* flag = std::get_if<bool>(&value)) return file.assign(key, SceneValue(*flag));
     if (const auto* whole = std::get_if<int>(&value)) return file.assign(key, SceneValue(*whole));
     file.assign(key, SceneValue(std::get<double>(value)));
-  } catch (const std::logic_error&) {  // leave the key: read_scene() reports its error
+  } catch (const std::logic_error&) {  // leave the invalid key as it is: read_scene() reports it
     file.set(key + "=" +
              std::visit(
                  []<class T>(const T& one) {

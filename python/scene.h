@@ -56,12 +56,13 @@ void bind_exploration(pybind11::module_& module);
 void bind_tuning(pybind11::module_& module);
 void bind_recordings(pybind11::module_& module);
 
-/// A waveform of any family, as a single Python type.
+/// A waveform of any waveform family (pulse, ramp, ...), so that Python has a single type for all of them.
 struct PyWaveform {
   Waveform value;
 };
 
-/// Returns the waveforms by drive of a Python dict of softland._softland.Waveform; these waveforms replace those of a scene.
+/// Converts a Python dict of softland._softland.Waveform, by name of the electrode, piezo or dispersion force, to waveforms
+/// that replace those of a scene.
 [[nodiscard]] DriveWaveforms waveforms_of(const pybind11::dict& given, InterruptibleRun& run);
 
 /// Returns the result of `work`. Messages about an invalid request name options by their Python keywords.
@@ -80,8 +81,8 @@ auto in_keywords(const char* verb, Work&& work) {
 [[nodiscard]] Outcome study(PyScene& scene, const std::string& verb, const verbs::Arguments& arguments,
                             const pybind11::dict& waveforms, std::string command, const pybind11::object& on_progress);
 
-/// Returns the scene with other drive waveforms. Throws InvalidInput for an unknown drive, and for a waveform beyond the limits
-/// of its voltage source.
+/// Returns the scene with other waveforms for some electrodes, piezos or the dispersion force. Throws InvalidInput for a name
+/// that the scene lacks, and for a waveform beyond the limits of its voltage source.
 [[nodiscard]] std::shared_ptr<const PreparedScene> driven_by(const std::shared_ptr<const PreparedScene>& prepared,
                                                              const DriveWaveforms& waveforms);
 

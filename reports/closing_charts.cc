@@ -58,7 +58,8 @@ CurveTable curve_table(const CurveRecord& curve) {
   return table;
 }
 
-/// Extends the waveform of a drive by the level `rest` before t = 0 and by its last level up to the time `end`.
+/// Extends the waveform of an electrode or piezo for a chart: by the level `rest` before t = 0, and by its last level up to the
+/// time `end` [s].
 Points whole_waveform(const Points& waveform, double rest, double end) {
   Points points = drawable(waveform);
   if (points.empty()) return points;
@@ -163,8 +164,8 @@ std::optional<std::array<double, 2>> plane_band(const ClosingRecord& result, con
   return std::array{margin * lowest, margin * std::fmax(-2 * lowest, height)};
 }
 
-/// Adds the curves and the drive waveforms of each run as tables to the description of the charts; returns the names of the
-/// drives.
+/// Adds the curves and the drive waveforms of each run as tables to the description of the charts. Returns the names of the
+/// electrodes, piezos and the dispersion force that have a waveform.
 std::set<std::string> add_time_tables(const ClosingRecord& result, double window, Picture& out) {
   std::set<std::string> drives;
   for (const Drawn& drawn : runs) {
@@ -248,7 +249,7 @@ class TimeCharts {
     const DriveLimits limits = drive_limits(result_, drive);
     for (const auto& [name, level] :
          {std::pair{"upper limit of the driver", limits.highest}, {"lower limit of the driver", limits.lowest}}) {
-      if (!std::isfinite(drawable(level)) || drawable(level) == 0) continue;  // the axis shows the level 0 already
+      if (!std::isfinite(drawable(level)) || drawable(level) == 0) continue;  // the axis marks 0 V already
       const std::string table = fmt::format("driver/{}/{}", drive, level > limits.lowest ? "most" : "least");
       add_columns(out_.tables[table], "time_s", "level", {{0, level}, {window_, level}});
       drawn.series.push_back({table, "level", name, Role::limit});

@@ -73,8 +73,8 @@ std::vector<KeyNumber> key_numbers(const ClosingRecord& result) {
   return keys;
 }
 
-/// Adds rows for what the waveform of each drive demands of its voltage source (extreme voltages, slew rate) if there are
-/// several drives. With `pair`, the table also has the values of the plain step.
+/// Adds rows for what each waveform demands of its voltage source (extreme voltages, slew rate) if several electrodes or piezos
+/// have waveforms. With `pair`, the table also has the values of the plain step.
 void add_drive_rows(ReportTable& table, const ClosingRecord& result, bool pair) {
   if (result.best.waveforms.size() < 2) return;
   for (const auto& [drive, found] : result.best.waveforms) {

@@ -7,7 +7,7 @@
 namespace softland::internal {
 
 /// Makes the results on the derivatives of figures of merit by the varied quantities, for the report. `drive` has the closings
-/// of the devices under the same waveforms.
+/// of the varied devices under the waveforms for which the derivatives were computed.
 [[nodiscard]] RobustnessRecord::Derived record_of(const Derivatives& derivatives, const DriveRobustness& drive);
 /// Makes the section on the derivatives of all figures of merit; the section is empty if no derivatives were computed.
 [[nodiscard]] ReportSection derivatives_section(const RobustnessRecord::Derived& derivatives,

@@ -24,7 +24,7 @@ std::string height_measure(double x, double top, double bottom, const std::strin
          drawn_line(x - 4, bottom, x + 4, bottom, "measure") + drawn_words(x + 8, (top + bottom) / 2 + 4, "start", text);
 }
 
-// The parameters of a waveform, with the times at which a drawing labels them.
+// Searched parameters of a waveform, with the places on the time axis at which a drawing of the waveform names them.
 struct Described {
   struct Place {
     std::string name;
@@ -35,8 +35,8 @@ struct Described {
   std::vector<std::pair<std::string, double>> levels;
 };
 
-/// Returns the labelled parameters of the waveform of a drive, whose level is constant from the time `moves` on [s]. Empty if
-/// no labels exist for this waveform family, or if its times are unknown.
+/// Returns the parameters to label in the waveform of an electrode or piezo, which is constant from the time `moves` [s] on.
+/// Empty for a waveform family whose parameters have no place on the time axis, and for unknown times.
 Described described_parameters(const ClosingRecord& result, const std::string& drive, double moves) {
   const auto parameter = [&](const std::string& name) {
     const auto found = result.search->parameters.find(drive + "." + name);

@@ -12,8 +12,8 @@ namespace softland::internal {
 /// of the page.
 [[nodiscard]] std::string device_picture(const DrawnScene& scene);
 
-/// Draws the waveform of a drive from t = 0 to the hold level. The searched parameters are written where they act; empty for a
-/// drive without searched parameters.
+/// Draws the waveform of an electrode or piezo from t = 0 to the hold level, with the name of each searched parameter at the
+/// times where it acts. Empty without searched parameters.
 [[nodiscard]] std::string parameter_drawing(const ClosingRecord& result, const std::string& drive);
 
 }  // namespace softland::internal

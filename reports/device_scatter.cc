@@ -20,9 +20,9 @@ namespace {
 using namespace internal;
 
 constexpr std::size_t most_dots = 300;
-constexpr std::size_t groups = 16;  // number of groups into which the devices are sorted, each with a median
+constexpr std::size_t groups = 16;  // number of groups of devices by a varied quantity, each with its median
 constexpr std::size_t fewest_of_group = 5;
-constexpr double shown_share = 0.99;  // share of the devices with this figure of merit that the axis shows
+constexpr double shown_share = 0.99;  // share of the devices that a plot shows: its axis leaves out outliers
 
 // A varied quantity by device; a factor is given as its deviation in percent.
 struct VariedQuantity {
@@ -45,7 +45,8 @@ std::vector<VariedQuantity> quantities_of(const RobustnessReport& report) {
   return all;
 }
 
-// Returns the medians of y in groups of devices with neighbouring x. A device without a value y counts as the worst device.
+// Returns the medians of a figure of merit y in groups of devices with similar values of a varied quantity x. A device without
+// the figure counts as the worst device.
 CurveTable medians(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<std::size_t> order(x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

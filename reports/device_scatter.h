@@ -6,7 +6,7 @@
 
 namespace softland::internal {
 
-/// Draws small scatter plots of the closings under the last set of waveforms of the report: a dot for each of at most 300
+/// Draws small scatter plots of the closings under the last of the compared sets of waveforms: a dot for each of at most 300
 /// devices, and a line through the medians of groups of all devices. Empty if nothing can be drawn.
 [[nodiscard]] ReportSection device_scatter(const RobustnessReport& report);
 

@@ -263,7 +263,7 @@ std::vector<KeyNumber> internal::devices_keys(const DevicesFindings& d) {
 
 namespace {
 
-// Returns a table of these waveforms and their figures of merit on the devices, with the given names in the first column.
+// Returns a table with a row per pair in `rows`: the name of a waveform, and its figures of merit on the devices.
 ReportTable devices_table(const DevicesFindings& d, const std::vector<std::pair<std::string, const DevicesFindings::Row*>>& rows,
                           ShownIn where) {
   ReportTable table{.head = {"95th percentile (99th)"}, .rows = {}};

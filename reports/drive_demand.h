@@ -1,4 +1,4 @@
-// The waveforms of the drives of a run, and what they demand of the voltage sources.
+// The waveforms of electrodes, piezos and dispersion force (the drives) in a run, and what they demand of the voltage sources.
 #pragma once
 
 #include <string>
@@ -14,10 +14,11 @@ struct DriveScale {
   std::string_view unit;  ///< unit of the quantity; empty: a plain number
   double rest = 0;        ///< level of the waveform before t = 0, in the unit of the quantity
 };
-/// Returns what the waveform of this drive prescribes: a voltage; for the drive named "dispersion", a factor.
+/// Returns the quantity that a waveform prescribes. `drive` names an electrode or a piezo (a voltage), or is "dispersion" (a
+/// factor).
 [[nodiscard]] DriveScale drive_scale(std::string_view drive);
 [[nodiscard]] DriveLimits drive_limits(const ClosingRecord& result, const std::string& drive);
-/// Returns the waveform of a drive in a run; empty if the run has none.
+/// Returns the waveform of an electrode, a piezo or the dispersion force in a run; empty if the run has none of that name.
 [[nodiscard]] const Points& waveform(const RunRecord& run, const std::string& drive);
 /// The voltages and the slew rate that a waveform, which begins at the level `rest`, demands of its voltage source.
 struct DriveDemand {

@@ -20,13 +20,13 @@
 namespace softland::internal {
 namespace {
 
-constexpr std::size_t most_values = 800'000;  // largest number of table values on a page; each takes two letters
+constexpr std::size_t most_values = 800'000;  // largest number of stored values on a page; each takes two bytes
 constexpr std::size_t most_reasons = 300;     // largest number of different failure reasons on a page
-constexpr int steps = 4094;                   // number of steps between the ends of a column into which its values are rounded
+constexpr int steps = 4094;                   // a column's values are rounded to multiples of (largest - smallest) / steps
 constexpr std::size_t most_bins = 24;
 constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// Appends a number below 4096 to the text as two letters.
+/// Appends a number below 4096 to the text as two digits of base 64.
 void append_letters(std::string& text, std::size_t number) {
   text += letters[number / 64];
   text += letters[number % 64];
@@ -66,7 +66,8 @@ double shortened_to(int digits, double value) {
   return std::isfinite(near) ? near : value;
 }
 
-/// Returns the values of a column as steps between the ends of the column; steps of equal ratio if the column spans decades.
+/// Returns a column of the exploration as JSON: its name, its smallest value, its step, and the values as numbers of steps in
+/// base 64. Steps are of equal ratio if the column spans decades.
 nlohmann::json column_json(const ExplorationReport& report, std::size_t column, const std::vector<std::size_t>& rows) {
   const ColumnRange range = range_of(report, column);
   constexpr double decades = 100;  // least ratio of the largest value of a column to the smallest for steps of equal ratio

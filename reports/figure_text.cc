@@ -18,7 +18,7 @@ constexpr int figure_digits = 4;  // significant digits of a figure in tables, u
 
 Change change(double before, double after, bool lower_is_better, ChangeKind kind) {
   if (!std::isfinite(before) || !std::isfinite(after)) return {};
-  // Relative difference from the value under the plain step up to which a figure counts as unchanged.
+  // Relative change of a figure of merit up to which the report calls it unchanged.
   constexpr double visible = 0.005;
   if (std::abs(after - before) <= visible * std::abs(before)) return {"unchanged", Verdict::same};
   const bool lower = after < before;

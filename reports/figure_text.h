@@ -18,7 +18,7 @@ struct Change {
   Verdict verdict = Verdict::neutral;
 };
 enum class ChangeKind { size, time, count };
-/// Returns the change of a figure in words; the change is neither good nor bad unless `lower_is_better` is set.
+/// Returns the change of a figure of merit in words. If `lower_is_better`, the verdict is better or worse, else neutral.
 [[nodiscard]] Change change(double before, double after, bool lower_is_better, ChangeKind kind = ChangeKind::size);
 [[nodiscard]] Change figure_change(const RunRecord& before, const RunRecord& after, const Figure& figure);
 

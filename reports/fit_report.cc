@@ -23,7 +23,7 @@ using internal::plain_number;
 using internal::quantity;
 using nlohmann::json;
 
-constexpr double unlikely = 3;  // number of standard errors from which a residual of a fit is unlikely
+constexpr double unlikely = 3;  // the report lists measurements whose residual exceeds this number of standard errors
 
 // Describes a change of several unknowns that the data do not detect: "+1 % of a with −2.1 % of b".
 std::string direction_prose(const Fit& fit, const WeakDirection& weak) {
@@ -433,7 +433,7 @@ Document document_of(const FitRecord& fit) {
                     .headline = fit_headline(fit),
                     .sections = {values_section(fit)},
                     .made = made_again(fit.origin, fit.seed, fit.tolerance)};
-  constexpr std::size_t most = 12;  // largest number of unknowns of a fit whose table of correlations is readable
+  constexpr std::size_t most = 12;  // largest number of unknowns for which the page has a table of their correlations
   if (fit.unknowns.size() >= 2 && fit.correlation.size() == fit.unknowns.size() && fit.unknowns.size() <= most)
     document.sections.push_back({.id = "correlation",
                                  .heading = "Correlations of the errors",

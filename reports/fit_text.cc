@@ -31,8 +31,8 @@ std::string nominal_text(const FittedUnknown& u) {
 }
 
 std::string fitted_error_text(const FittedUnknown& u) {
-  // Standard error, as a multiple of the unknown's scale (one standard deviation of [spread], or a tenth of the scene's value),
-  // from which the value counts as not known.
+  // Least standard error of an unknown of the fit, in its scale (its standard deviation in [spread], or a tenth of its value in
+  // the scene), for which the report says "not known" instead of a number.
   constexpr double nothing = 100;
   if (!(u.standard_error < nothing * u.scale)) return "not known";
   if (u.unit.empty()) return plain_number(100 * u.standard_error, 2) + "\u00a0%";

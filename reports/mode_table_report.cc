@@ -23,7 +23,8 @@ using internal::quantity;
 
 constexpr int table_digits = 6;
 
-/// Returns the column of the mode table that holds a mode of the file; none for a mode that is left out.
+/// Returns the column of the mode table that holds a mode of the finite-element file; none for a mode that is not bending,
+/// which the table leaves out.
 std::optional<std::size_t> taken_column(const ModeTable& table, const ModeFound& found) {
   if (found.kind != ModeKind::bending) return std::nullopt;
   const auto at = std::find(table.frequencies.begin(), table.frequencies.end(), found.frequency);
@@ -64,7 +65,7 @@ void draw_taken(internal::Picture& drawn, const ModeTable& table, const ModeFoun
   const std::string id = fmt::format("mode-{}", found.number), places = id + "-places";
   const std::vector<double>& shape = table.shapes[column];
   const ClampedSpline spline(table.positions, shape, table.far_end);
-  // Choose a power of ten as the unit of the mode shape, so that its values have one to three digits before the point.
+  // Choose a power of 1000 as the unit of the mode shape, so that its largest value has one to three digits before the point.
   const int exponent = 3 * static_cast<int>(std::floor(std::log10(largest_of(shape)) / 3));
   const double unit = std::pow(10.0, exponent);
   for (int k = 0; k <= points; ++k) {
@@ -72,7 +73,7 @@ void draw_taken(internal::Picture& drawn, const ModeTable& table, const ModeFoun
     drawn.tables[id]["x"].push_back(x);
     drawn.tables[id]["y"].push_back(spline.value(x) / unit);
   }
-  // Draw so few dots on a mode shape that the line remains visible.
+  // Draw a dot at every `step`-th position only, so that the line of the mode shape remains visible.
   const std::size_t step = 1 + table.positions.size() / most_dots;
   for (std::size_t i = 0; i < table.positions.size(); i += step) {
     drawn.tables[places]["x"].push_back(table.positions[i]);

@@ -45,7 +45,7 @@ double hold_of(const OpeningResult& r, const std::string& drive) {
   return r.holds[static_cast<std::size_t>(std::find(names.begin(), names.end(), drive) - names.begin())];
 }
 
-// Returns the waveform of a drive in an opening as points of time [s] and level [V], beginning at the hold level.
+// Returns the waveform of an electrode or piezo in an opening as points of time [s] and level [V], from the hold level on.
 std::vector<std::pair<double, double>> line_of(const OpeningResult& r, const std::string& drive, const Signal& signal,
                                                double end) {
   const double hold = hold_of(r, drive);
@@ -121,8 +121,8 @@ double shown_until(const ReleaseRecord& r, double window) {
   return std::min(window, longer * end);
 }
 
-// Returns a table of 95th percentiles of figures of merit over the devices: for the plain opening, in which all drives drop to
-// 0 V, and for the found opening.
+// Returns a table of 95th percentiles of figures of merit over the devices: for the plain opening, in which all electrodes and
+// piezos drop to 0 V at once, and for the found opening.
 ReportSection devices_section(const ReleaseRecord::Devices& found) {
   ReportTable table{.head = {"", plain_prose, "found"}, .rows = {}};
   table.rows = {{"come to rest in the open position", percent(found.plain.open), percent(found.best.open)},
@@ -336,7 +336,7 @@ std::string release_csv(const OpeningResult& r) {
   const std::string whole = csv(signals, o.voltages_end);
   const auto row_end = [&](std::size_t from) { return whole.find('\n', from) + 1; };
   const std::size_t first = row_end(0), second = row_end(first);
-  // csv() starts all waveforms at 0 V, as in a closing. Replace this first row: an opening starts at the hold levels.
+  // csv() starts all waveforms at 0 V, as is right for a closing. An opening starts at the hold levels: replace the first row.
   const bool jumps = whole.compare(second, 2, "0,") == 0;
   std::string held = "0";
   bool begins_held = true;

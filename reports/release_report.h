@@ -57,8 +57,8 @@ struct ReleaseRecord {
 [[nodiscard]] nlohmann::json json_of(const ReleaseRecord& record);
 [[nodiscard]] ReleaseRecord read_release(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const ReleaseRecord& record);
-/// Draws the gap in the plain opening, in which all drives drop to 0 V, and in the best opening, and the drive waveforms; the
-/// results must have the gaps.
+/// Draws the gap over time in the plain opening (all electrodes and piezos drop to 0 V at once) and in the best opening, and
+/// the drive waveforms; ReleaseRecord::gaps must not be empty.
 [[nodiscard]] std::string svg_of(const ReleaseRecord& record);
 /// Returns the drive waveforms of the best opening, or else of the plain opening, as CSV that begins at the hold levels. A
 /// header `time_s,<drive>,...` is followed by rows [s, V] with straight lines between them; rows of the same time are a jump.

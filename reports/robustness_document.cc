@@ -56,7 +56,8 @@ std::string label_of(const Figure& f) {
   return fmt::format("{}{}{}", f.name, has_index ? ", " : "", has_index ? f.symbol : "");
 }
 
-// Returns the role in charts of the set of drive waveforms number i: the last set is `best`, the plain step `baseline`.
+// Returns the style of line i of `count` in charts that compare sets of drive waveforms: the last set has the style of the best
+// waveform, the first one, the plain step, that of the baseline.
 internal::Role role_of(std::size_t i, std::size_t count) {
   if (i + 1 == count && i > 0) return internal::Role::best;
   if (i == 0) return internal::Role::baseline;
@@ -251,8 +252,8 @@ ReportSection statistics_section(const RobustnessRecord& found) {
                     Paragraph{.text = internal::window_prose(found.windows), .is_note = true}}};
 }
 
-// Returns the section on the value of per-device calibration: results of the last set of waveforms, with more and more
-// quantities measured on every device.
+// Returns the section on the value of per-device calibration: figures of merit under the last compared set of waveforms, for
+// more and more quantities that are measured on every device.
 ReportSection knowledge_section(const RobustnessRecord& found) {
   ReportSection section{.id = "knowledge", .heading = "Value of per-device calibration", .parts = {}};
   if (found.by_knowledge.empty()) return section;

@@ -57,8 +57,8 @@ std::map<std::string, Points> waveforms_of(const PreparedScene& nominal, const D
   return all;
 }
 
-// Returns the warnings of the nominal scene, and the reason why the last set of waveforms does not keep the nominal device
-// closed.
+// Returns the warnings of the nominal scene, and the reason why the last compared set of waveforms does not keep the nominal
+// device closed.
 std::vector<std::string> warnings(const RobustnessReport& report) {
   std::vector<std::string> all = report.nominal.scene.warnings;
   if (!report.unheld.empty()) all.push_back(report.unheld);

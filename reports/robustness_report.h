@@ -22,8 +22,9 @@
 
 namespace softland {
 
-/// The input of a report. Three members are for the last set of waveforms and may be empty: `sensitivity`, `derivatives`, and
-/// `courses`, the motions of devices at quantiles of the highest rebound.
+/// The input of a report that compares sets of drive waveforms on the same devices. Three members are for the last of these
+/// sets only, and may be empty: `sensitivity`, `derivatives`, and `courses`, the motions of devices at quantiles of the highest
+/// rebound.
 struct RobustnessReport {
   const PreparedScene& nominal;
   const Robustness& found;
@@ -33,14 +34,16 @@ struct RobustnessReport {
   Sensitivity sensitivity = {};
   Derivatives derivatives = {};
   std::vector<DeviceCourse> courses = {};
-  std::optional<BoxAndChaos> box_and_chaos = {};  ///< worst cases and polynomial chaos, for the last set of waveforms
+  std::optional<BoxAndChaos> box_and_chaos = {};  ///< worst cases and polynomial chaos, for the last compared set of waveforms
   HoldWindows windows = {};                       ///< hold voltages between which the devices stay closed, by electrode
-  std::string unheld = {};  ///< warning that the last set of waveforms does not keep the nominal switch closed; may be empty
+  /// Warning that the last compared set of waveforms does not keep the nominal switch closed; may be empty.
+  std::string unheld = {};
   bool interrupted = found.interrupted;  ///< true when the study or add_details() was interrupted
 };
 
-/// Adds sensitivity, derivatives, hold voltages and curves over time for the last set of waveforms; with `other_ways_too` also
-/// worst cases and polynomial chaos, which take further searches. Adds nothing after an interruption.
+/// Adds results for the last compared set of waveforms: Sobol' indices, derivatives, hold voltages, and motions of typical
+/// devices; with `other_ways_too` also worst cases and polynomial chaos, which take further simulations. Adds nothing after an
+/// interruption.
 void add_details(RobustnessReport& report, bool other_ways_too, const Progress& progress);
 
 /// The results of `softland robustness`, from which JSON, text and tables are made.

@@ -54,14 +54,15 @@ inline constexpr std::size_t longest_line = std::size_t{16} << 20;
 /// Reads one line of text as a JSON object. This function and the others that read lines throw InvalidInput with the rule:
 /// "must be a JSON object: ...".
 [[nodiscard]] nlohmann::json read_line(std::string_view line);
-/// Returns true if this line of text says that no more shots follow.
+/// Returns true for the line {"done":true}, which says that no more shots (closings of the device) follow.
 [[nodiscard]] bool is_end(const nlohmann::json& line);
-/// Returns the number of the shot in a line of text, a whole number from 1 on.
+/// Returns the number of the shot (one closing of the device) that a line of text is about, a whole number from 1 on.
 [[nodiscard]] int shot_number(const nlohmann::json& line);
 /// Reads a shot (voltages for one closing) from its JSON. Messages begin with the invalid key: "drives.main.V: must be a list
 /// of numbers".
 [[nodiscard]] CommandedShot read_shot(const nlohmann::json& line);
-/// Reads the contact record of shot number `shot`, whose recording lasts `duration` [s].
+/// Reads the contact record of shot (closing) number `shot` from its JSON. All edges must be within the recorded time
+/// `duration` [s].
 [[nodiscard]] ContactRecord read_record(const nlohmann::json& line, int shot,
                                         double duration = std::numeric_limits<double>::infinity());
 

@@ -37,7 +37,7 @@ struct TuningReport {
     int number = 0;
     /// Commanded voltages of the shot by electrode or piezo: time [s] and voltage [V].
     std::map<std::string, Points> waveforms = {};
-    /// Time for which the last levels of the shot are held [s]; cost that the tuner expects of the shot.
+    /// Time for which the last voltages are held [s]; cost that the tuner predicts for the closing under these voltages.
     double hold_time = 0, expected_cost = 0;
     PredictedRecord predicted = {};
   };

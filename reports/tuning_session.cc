@@ -63,7 +63,8 @@ struct TuningSession::State {
   std::filesystem::path log_file = {};
   std::unique_ptr<TuningLog> log = {};
   std::size_t behind = 0;  // number of closings of the log from which the tuner has learned
-  // True while the log has the contact record of the next shot, but the tuner has not yet learned from it.
+  // True while the log file has the contact record of the latest closing, but the tuner has not yet learned from it, as after
+  // an interruption.
   bool is_on_record = false;
   std::optional<Tuner> tuner = {};
   std::vector<TunedClosing> closings = {};
@@ -152,7 +153,7 @@ std::optional<TuningEnd> TuningSession::ends(int most) {
 }
 
 void TuningSession::throw_if_failing() const {
-  constexpr std::ptrdiff_t most_failures = 3;  // number of shots in a row without a contact record at which the tuning fails
+  constexpr std::ptrdiff_t most_failures = 3;  // number of closings in a row without a contact record that end the tuning
   const std::vector<TunedClosing>& all = closings();
   const auto of_log = all.rend() - static_cast<std::ptrdiff_t>(state_->behind);
   const auto failures =

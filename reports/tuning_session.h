@@ -57,7 +57,7 @@ class TuningSession {
   /// continues. The best waveform becomes the next shot if that is the last shot, or if other waveforms have closed the switch
   /// bounce-free often enough.
   [[nodiscard]] std::optional<TuningEnd> ends(int most);
-  /// Throws InvalidInput if the last three shots gave no contact record.
+  /// Throws InvalidInput if the last three closings of the device gave no contact record.
   void throw_if_failing() const;
 
   /// Returns the results of the tuning as tune.json holds them; `command` is the command line.

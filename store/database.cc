@@ -204,7 +204,7 @@ bool Statement::step() {
   const int code = sqlite3_step(handle_.get());
   if (code == SQLITE_ROW) return true;
   if (code != SQLITE_DONE) {
-    // Resets the statement at the end of this scope: a reset before that would change SQLite's message about a failed step.
+    // Reset the statement only after fail() has read SQLite's message about the failed step: a reset changes this message.
     struct Reset {
       Statement* statement;
       ~Reset() { statement->reset(); }

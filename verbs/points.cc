@@ -16,8 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-// Members of a verb's JSON that an exploration does not store for a point: scene and waveforms, program and settings, computing
-// times, and tables by number of modes.
+// Members of a verb's JSON that are no results of a point, so that an exploration does not store them as columns: scene and
+// waveforms, program and settings, computing times, and tables by number of modes.
 constexpr std::array<std::string_view, 12> left_out{
     "scene",      "made_with",         "waveforms", "by_modes",  "pulled_through_by_modes_V", "seed", "tolerance",
     "duration_s", "dynamic_precision", "rhs_s",     "has_start", "band_of_contact_gap"};
