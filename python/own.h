@@ -43,8 +43,8 @@ class FirstError {
 
 /// A voltage that a Python function computes for an array of times. A polynomial approximates the voltage between two
 /// breakpoints, through Chebyshev points of the second kind. The number of points doubles until the polynomial through every
-/// other point gives the remaining values to own_waveform_accuracy, so that a candidate takes a few calls. Barycentric formula:
-/// J.-P. Berrut & L. N. Trefethen, SIAM Review 46 (2004) 501, eq. 4.2.
+/// other point gives the remaining values, with an error below own_waveform_accuracy: a candidate waveform of a search takes a
+/// few calls. Barycentric formula: J.-P. Berrut & L. N. Trefethen, SIAM Review 46 (2004) 501, eq. 4.2.
 class PythonWaveform final : public OwnWaveform {
  public:
   /// `voltage` is a function (times, x) -> volts of arrays; `breakpoints` is a function (x) -> times, or an array of times.
@@ -77,7 +77,7 @@ class PythonWaveform final : public OwnWaveform {
   std::vector<OwnParameter> parameters_;
   pybind11::object breakpoints_, voltage_;
   mutable std::mutex lock_;
-  // Cache of the voltages of the latest candidates: evaluating one of these candidates again does not call Python.
+  // Cache: voltages of the latest candidate waveforms of a search, so that a repeated candidate does not call Python.
   mutable std::vector<std::shared_ptr<const Course>> known_;
   mutable FirstError first_;
 };

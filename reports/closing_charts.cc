@@ -202,7 +202,7 @@ class TimeCharts {
     gap.height = 320;
     add_series(gap, "", "tip_gap_m");
     Chart near = gap;
-    constexpr double readable = 0.05;  // least gap with room for the label of its mark, as a share of the largest gap
+    constexpr double readable = 0.05;  // least labelled height of a rebound, as a share of the largest gap
     for (Mark& mark : gap.marks) {
       if (mark.y < readable * largest(out_.tables, "tip_gap_m")) mark.text.clear();
     }
@@ -218,7 +218,8 @@ class TimeCharts {
     if (near.y_home) keep(std::move(near));
   }
 
-  /// Adds bars for the times with closed contacts; for several contacts, a bar for the connection and a bar for each contact.
+  /// Adds bars for the times in which the contact is closed; for several contacts, a bar for their electrical connection, and a
+  /// bar for each contact.
   void add_bars() {
     Chart bars = over_time("contact", "Contact: closed and open", contact_caption(result_));
     bars.x_home = bars.x_whole;

@@ -135,8 +135,8 @@ ReportTable figures_table(const ClosingRecord& result) {
   return table;
 }
 
-// Returns a table of the figures of merit of each of several contacts; the main table is about the connection that the contacts
-// make.
+// Returns a table of the figures of merit of each of several contacts; the main table is about the electrical connection that
+// the contacts make together.
 ReportTable contacts_table(const ClosingRecord& result) {
   constexpr std::array shown{&Metrics::initial_contact_time, &Metrics::impact_velocity, &Metrics::major_bounce_height,
                              &Metrics::peak_contact_force, &Metrics::hold_force};
@@ -372,7 +372,7 @@ Document closing_document(const ClosingRecord& result) {
                     .warnings = result.warnings,
                     .draw = [&result] { return picture(result); },
                     .made = made_again(result.origin, {}, result.tolerance)};
-  if (result.search) {  // on a terminal, the text about a search leaves out all but the results of the search
+  if (result.search) {  // warnings about few contact asperities go to the page only: the terminal text of a search is short
     const auto few = std::stable_partition(document.warnings.begin(), document.warnings.end(),
                                            [](const std::string& one) { return !is_few_summits_warning(one); });
     document.page_warnings.assign(few, document.warnings.end());

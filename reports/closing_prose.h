@@ -14,7 +14,8 @@ namespace softland::internal {
 /// Returns true if a run reaches the contact plane but has no figures of merit of the time after that: the scene has no
 /// contact, or the simulation stopped.
 [[nodiscard]] bool ends_at_touch(const FigureValues& figures);
-/// Returns true if one contact of several has touched, but the contacts that make the connection were never closed together.
+/// Returns true if one of several contacts has touched, but the contacts that the electrical connection needs were never closed
+/// together.
 [[nodiscard]] bool touches_in_part(const RunRecord& run);
 /// Returns true if a run began with a closed contact: the run was complete, but without a first touch.
 [[nodiscard]] bool began_closed(const RunRecord& run);

@@ -66,8 +66,8 @@ struct ClosingRecord {
 /// long steps. Of a long run, at most most_curve_rows points stay, which draw the same picture with all extremes, and the
 /// most_rebounds highest rebounds.
 [[nodiscard]] CurveRecord curve_of(const Trajectory& trajectory, const MetricsOptions& options);
-/// Returns the motion of a run with `rebounds`, which the trajectory need not show. If `is_thinned`, points are missing in the
-/// trajectory, and none are interpolated.
+/// Returns the motion of a run at the contact point, with `rebounds` that were found during the run. If `is_thinned`, the
+/// trajectory keeps only some of the integrator's steps, and no points are interpolated between them.
 [[nodiscard]] CurveRecord curve_of(const Trajectory& trajectory, const std::vector<Rebound>& rebounds, bool is_thinned,
                                    const MetricsOptions& options);
 

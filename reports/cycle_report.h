@@ -75,7 +75,7 @@ struct CycleRecord {
 /// Returns a report with sentences and tables, and charts of the gap if the results have curves. The document keeps a reference
 /// to `record`.
 [[nodiscard]] Document document_of(const CycleRecord& record);
-/// Draws the gap, the closed contact and the drive waveforms over the first cycles; the results must have curves.
+/// Draws the gap, the closed contact and the drive waveforms over the first cycles; CycleRecord::curves must not be empty.
 [[nodiscard]] std::string svg_of(const CycleRecord& record);
 
 }  // namespace softland

@@ -102,7 +102,7 @@ std::string shown_name(const DevicesFindings& d, const DevicesFindings::Row& row
 // Least share of devices with a failure, such as a switch that stays open, for which a table has a column.
 constexpr double least_share = 0.0005;
 
-// Returns true if this share of the devices is large enough for a column in any row of the table.
+// Returns true if a share of devices, such as that of devices that stay open, exceeds least_share in any row of the table.
 bool any_of(const std::vector<DevicesFindings::Row>& rows, double DevicesFindings::Row::*share) {
   return std::ranges::any_of(rows, [&](const DevicesFindings::Row& row) { return row.*share > least_share; });
 }

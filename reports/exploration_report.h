@@ -48,9 +48,10 @@ struct ExploredFront {
   std::vector<std::size_t> members;
   std::optional<std::size_t> knee;  ///< index in the report of the knee, the member of the front that is the best compromise
   std::vector<double> reference;    ///< worst value of every aim (figure to minimise or maximise) among the points
-  /// Hypervolume that the front dominates up to the reference, in the units of the aims; NaN: more than three aims.
+  /// Hypervolume between the front and the point `reference`, in the product of the figures' units; NaN for more than three
+  /// aims.
   double hypervolume = Metrics::unset;
-  /// Hypervolume that the front dominates, as a share of the box between the best and the worst values of the aims.
+  /// `hypervolume` as a share of the box between the best and the worst value of every aim.
   double share = Metrics::unset;
 };
 [[nodiscard]] ExploredFront explored_front(const ExplorationReport& report);

@@ -174,8 +174,8 @@ class MotionView {
     return lower + upper + "Z";
   }
 
-  /// Draws the first contact enlarged, in the picture beside the switch, at an instant; empty if the beam is outside that
-  /// picture.
+  /// Draws the beam above the first contact of the scene at an instant, in the enlarged picture beside the switch; empty if the
+  /// beam is outside that picture.
   [[nodiscard]] std::string detail(const ShownMotion& m, std::size_t row, const std::string& style) const {
     if (!has_detail()) return {};
     const ShownMotion::Contact& c = m.contacts.front();
@@ -219,7 +219,7 @@ class MotionView {
            drawn_rectangle(left - contact_wide / 2, top, contact_wide, std::max(0.0, end - top), "contact") + "</g>\n";
   }
 
-  // Chooses the scale of the enlarged picture: the highest rebound at the first contact fills the picture.
+  // Chooses the scale of the enlarged picture of the first contact of the scene: the highest rebound fills the picture.
   void set_detail() {
     if (motion_.contacts.empty()) return;
     double highest = 0.01 * motion_.contacts.front().gap;

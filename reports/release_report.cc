@@ -113,7 +113,8 @@ std::string remarks(const ReleaseRecord& r) {
   return words;
 }
 
-// Returns the end of the time range of the charts [s], a little after the switch has come to rest.
+// Returns the end of the time range of the charts [s]: three times the time at which the switch is at rest with all electrodes
+// and piezos at 0 V.
 double shown_until(const ReleaseRecord& r, double window) {
   constexpr double longer = 3;
   if (!r.best) return window;

@@ -99,7 +99,7 @@ inline constexpr auto varied_scene = "scene file with [spread], result folder (t
 inline constexpr auto scene_alone = "scene file (TOML)";
 inline constexpr auto usual_change = "change one key of the scene, such as --set gap.contact=\"1.8 um\"";
 
-/// Defaults for the members of a request type that describe its verb.
+/// A base of request types: default values of the members that describe the verb of the request (see Study).
 struct Usual {
   static constexpr const char *returns = "Outcome", *progress = "None", *in_python = "", *subject = "SCENE",
                               *scene = scene_or_result, *leaves = nullptr, *place = nullptr, *leaving = nullptr,
