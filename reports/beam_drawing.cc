@@ -163,8 +163,8 @@ class BeamSketch {
   [[nodiscard]] double height(double at, bool upper) const {
     return d_.gap.electrode + d_.rest_offset(at) + (upper ? section_at(s_, at).thickness : 0);
   }
-  // Appends to `corners` the outline [px] of a part of the beam in the view from the side, from position `begin` to `end` [m].
-  // heights(position) returns the lower and upper end of the part above the lower face of the beam [m].
+  // Appends to `corners` the outline [px] of a part of the beam in the view from the side. The part extends from position
+  // `begin` to `end` [m]. heights(position) returns its lower and upper end above the lower face of the beam [m].
   template <class ToPixel, class Heights>
   void band(double begin, double end, Corners& corners, ToPixel&& y, Heights&& heights) const {
     const double inside = 1e-9 * s_.length;

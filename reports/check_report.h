@@ -22,8 +22,8 @@ struct CheckRecord {
   struct Rest {
     double far_end_rise = Metrics::unset;  ///< rise of the far end of the structure above its straight shape [m]
     double far_end_gap = Metrics::unset;   ///< distance of the structure's far end to the plane of the electrode [m]
-    double contact_rise = Metrics::unset;  ///< rise of the structure at the first contact above its straight shape [m]
-    double contact_gap = Metrics::unset;   ///< distance of the structure at the first contact to the contact plane [m]
+    double contact_rise = Metrics::unset;  ///< rise of the structure, above its straight shape, at contact number one [m]
+    double contact_gap = Metrics::unset;   ///< distance of the structure to the plane of contact number one [m]
     double least_gap = Metrics::unset;     ///< smallest gap between the structure and the electrodes below it [m]
   };
   Origin origin;

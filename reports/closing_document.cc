@@ -43,8 +43,8 @@ std::string verdict_class(Verdict verdict) {
   return "neutral";
 }
 
-// Figures that judge how the switch closes. They are columns of the table of confirmations; all but the first are key numbers
-// of the page.
+// The figures of merit that show best how the switch closes. They are the columns of the table of confirmations; all but the
+// first are key numbers at the top of the page.
 constexpr std::array leading_figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::permanent_contact_time),
                                      figure_of(&Metrics::bounce_count), figure_of(&Metrics::major_bounce_height),
                                      figure_of(&Metrics::impact_velocity)};

@@ -224,7 +224,7 @@ json json_of(const ClosingRecord& r) {
 
 json summary_json(json result) {
   for (const char* key : {"curves", "scene_toml", "search"}) result.erase(key);
-  // A single run has its figures at the top level of the JSON; the object `best` repeats them.
+  // The figures of a single run are at the top level of the JSON: leave out the object `best`, which repeats them.
   if (!result.contains("baseline")) result.erase("best");
   return result;
 }

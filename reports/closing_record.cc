@@ -39,8 +39,8 @@ Points at_most_rows(Points all) {
   return kept;
 }
 
-// Returns the waveforms, by name of the electrode, piezo or dispersion force, as points connected by straight lines: exact for
-// steps, pulses and tables of up to most_curve_rows, within a thousandth of the amplitude for sines.
+// Returns the waveforms, by name of the electrode, piezo or dispersion force, as points connected by straight lines. They are
+// exact for steps, pulses and tables of up to most_curve_rows, and within a thousandth of the amplitude for sines.
 std::map<std::string, Points> waveforms(const PreparedScene& p) {
   std::map<std::string, Points> all;
   const std::vector<std::string> names = p.drive_names();

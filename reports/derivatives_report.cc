@@ -28,8 +28,8 @@ double elasticity(const FigureDerivatives& figure, const Derivatives::Variable& 
 
 std::string with_sign(const std::string& number, double value) { return (value > 0 ? "+" : "") + number; }
 
-// Derivatives at the nominal device describe the varied devices if the standard deviation in the sample and that of first order
-// differ by at most this factor.
+// Largest ratio of the standard deviation of a figure in the sample to the one that the derivatives predict (or the inverse) at
+// which the derivatives at the nominal device describe the varied devices.
 constexpr double most_apart = 2;
 
 bool agrees(const FigureDerivatives& figure, const DriveRobustness& drive) {

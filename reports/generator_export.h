@@ -21,7 +21,7 @@ struct Sampling {
   /// Sample rate and number of bits of the generator, as text; they replace those of the scene's section [driver].
   std::optional<std::string> rate, bits;
   std::string drive = {};                ///< the only drive (electrode or piezo) that is exported; empty: all
-  std::optional<std::string> amplifier;  ///< volts at the switch per volt at the generator; not set: that of the scene
+  std::optional<std::string> amplifier;  ///< volts at the switch per volt at the generator; not set: as in the scene
   std::optional<std::string> marker;     ///< time at which the sync output of the generator falls, as text
 };
 

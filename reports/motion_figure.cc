@@ -271,7 +271,7 @@ std::string strobe(const MotionView& view, const CurveRecord& curve) {
   return "<g class=\"strobe\">\n" + shapes + names + "</g>\n";
 }
 
-// Returns a run as JSON for the script of the page. The contact is open before and after the recorded times.
+// Returns the recorded motion of a run as JSON for the script of the page, in the places and modes of ShownMotion.
 json run_json(const ShownRun& run, const MotionView& view) {
   constexpr double fine = 1e-6;
   const ShownMotion& m = run.motion();

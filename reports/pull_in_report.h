@@ -19,8 +19,8 @@ namespace softland {
 
 inline constexpr const char* no_open_state = "no pull-in voltage: the switch has no open state";
 
-/// The pull-in and release voltages of an electrode [V] while the other drives have the constant voltages of the scene
-/// (bias_of()).
+/// The pull-in and release voltages of an electrode [V], while the other electrodes and the piezos have constant voltages: see
+/// bias_of().
 struct PullInRecord {
   double static_pull_in = Metrics::unset, dynamic_pull_in = Metrics::unset, release = Metrics::unset,
          pulled_through = Metrics::unset;
@@ -44,8 +44,8 @@ struct ElectrodeRecord {
 
 /// Returns a voltage as text, "22.469 V", or "none" if it is NaN.
 [[nodiscard]] std::string volts(double value);
-/// Returns the levels of the other drives that are not at 0, such as "piezo -1.5 V", while the voltage of the electrode varies;
-/// empty if all are at 0.
+/// Returns the constant levels that other electrodes, piezos or the dispersion force have while the voltage of the electrode
+/// varies, such as "piezo -1.5 V"; empty if all are at 0.
 [[nodiscard]] std::string bias_prose(const ElectrodeRecord& electrode);
 /// Describes the dynamic pull-in voltage. This voltage equals the static pull-in voltage if damping prevents an overshoot, or
 /// if no lower voltage step moves the beam.

@@ -31,7 +31,7 @@ struct CurveRecord {
   std::vector<double> gap;       ///< distance of the contact point to the contact plane [m]
   std::vector<double> velocity;  ///< velocity of the contact point towards the contact [m/s]
   std::vector<double> force;     ///< contact force on the beam [N]
-  /// Resistance of the connection, NaN while the connection is open [Ohm]; empty if the contacts have no resistivity.
+  /// Resistance of the closed switch between its terminals [Ohm]; NaN while it is open; empty if no contact has a resistivity.
   std::vector<double> resistance = {};
   std::vector<Rebound> rebounds;
   /// Times in which the contact is closed; of several contacts, times in which their electrical connection is closed.

@@ -315,7 +315,7 @@ std::string exported_text(const SceneFile& file, const ExportRequest& request, c
             plain_number(amplifier, 6), name));
     }
   }
-  // The hold level after the last change is part of the exported waveform.
+  // Export at least until the last change of any waveform, so that the file contains the hold levels.
   const double end = std::max(p.duration, last_breakpoint(sent.signals));
   std::string text = sent_text(request.format, p, what.drives, sent, end, request.sampling, note);
   if (generator == nullptr) return text;

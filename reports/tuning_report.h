@@ -61,9 +61,9 @@ struct TuningReport {
   TuningEnd end = TuningEnd::under_way;
   nlohmann::json setting = {};  ///< values of scene and options that distinguish tunings which cannot continue each other
 
-  /// Returns true if the closing of the shot with this number was recorded without a bounce.
+  /// Returns true if closing number `shot` of the device was recorded without a bounce.
   [[nodiscard]] bool was_bounce_free(int shot) const;
-  /// Returns true if the closing of any shot was recorded without a bounce.
+  /// Returns true if any closing of the device was recorded without a bounce.
   [[nodiscard]] bool ever_bounce_free() const;
   /// Returns true if the last closing of the real device used the waveform `kept` and had no bounce.
   [[nodiscard]] bool lands() const;

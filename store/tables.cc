@@ -189,8 +189,8 @@ std::vector<StoredColumn> columns_in(const Database& database) {
   return found;
 }
 
-// Throws DamagedStore unless the number of points of the study, and the index and count of the part of the study that the
-// database file holds, are possible: sizes of the part are computed from them.
+// Throws DamagedStore for an impossible number of points of the study, or an impossible part `index` of `count` of the study:
+// other numbers are computed from them.
 void require_sound(const Database& database, std::int64_t points, std::int64_t index, std::int64_t count) {
   constexpr std::int64_t most_points = std::int64_t{1} << 53;
   const auto damaged = [&](const std::string& what) {

@@ -28,7 +28,7 @@ std::string spelled(std::string_view marked, const Spelling& spelling) {
 }
 
 std::string spelled(const InvalidRequest& error, const Spelling& spelling) {
-  // with_fields() puts this mark before each option name, and none after it.
+  // with_fields() leaves the start mark before each option name, but no end mark: spelled() accepts both forms.
   return spelled(error.with_fields("\x02"), spelling);
 }
 

@@ -192,8 +192,8 @@ Outcome run(const Setting& setting, const PullInRequest& request) {
   try {
     progress.throw_if_stopped();
     if (!leaves_choices) {
-      // Keep the bias, the constant voltages of the other drives while that of an electrode varies: prepare() knows only the
-      // scene, not the values of --bias.
+      // Keep the bias, the constant voltages of all other electrodes and piezos while that of one electrode varies: prepare()
+      // knows only the scene, not the values of --bias.
       const std::vector<double> standing = prepared.scene.standing;
       prepared = prepare(file, false, progress, find_pull_in);
       prepared.scene.standing = standing;

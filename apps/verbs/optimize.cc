@@ -99,8 +99,8 @@ struct Asked {
 };
 
 // Returns true if computing the least closing time (verb `limit`) takes a second or two, which is short beside the search. The
-// computation is much longer with a slew limit, and with many modes: their number is judged by the ratio of the highest natural
-// frequency to the lowest, which for a cantilever is 34 with four modes and 57 with five.
+// computation is much longer with a slew limit, and with widely spaced natural frequencies. The ratio of the highest frequency
+// to the lowest is 34 for four modes of a cantilever, 57 for five.
 bool takes_little(const Asked& asked, const OptimizeResult& result) {
   // Largest ratio of the highest natural frequency to the lowest at which computing the least closing time is quick.
   constexpr double widest_band = 40;
