@@ -12,14 +12,14 @@
 namespace softland {
 namespace {
 
-constexpr double enough_seconds = 0.03;     // least total computing time of the repeated runs of one setting [s]
+constexpr double enough_seconds = 0.03;     // a setting is run again until its runs have taken this time in total [s]
 constexpr double reference_tighter = 1e-4;  // ratio of the reference run's tolerance to the tightest tolerance of the study
-// Ratio of the tolerance of a reference run to that of the next, tighter one; also of the run that checks the reference.
+// Ratio of the tolerances of two successive reference runs, and of the run that checks the reference to the reference.
 constexpr double reference_looser = 100;
-// Expected ratio of the computing times of successive reference runs (integrator of fifth order). It shows whether the next
-// reference run still fits the time limit.
+// Expected ratio of the computing times of two successive reference runs: 100^(1/5) for an integrator of fifth order. The next
+// reference run starts only if it is expected to end within the time limit.
 constexpr double reference_growth = 2.5;
-// A reference run resolves errors above ten times its tolerance; 9.9 allows for rounding.
+// Least ratio of a studied tolerance to that of the reference run, which cannot show smaller errors: ten, less rounding.
 constexpr double told_apart = 9.9;
 constexpr CloudOptions cloud_options{.runs = 8};
 
@@ -152,7 +152,7 @@ class Study {
     progress();
   }
 
-  // Measures error and computing time of an integrator with these quadrature points at every tolerance of the study.
+  // Measures error and computing time at every tolerance of the study. `given` has the integrator and the quadrature points.
   void sweep(const Switch& model, const AccuracyRow& given, std::vector<AccuracyRow>& rows) {
     bool cut = false;
     for (const double tolerance : options_.tolerances) {

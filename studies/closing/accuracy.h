@@ -5,7 +5,7 @@
 // The reference run has a ten-thousandth of the tightest tolerance and twice the largest number of quadrature points, or the
 // nearest values that its time limit allows. Settings that are as tight as the reference, or tighter, are skipped.
 // - A rigid plate has the same gap everywhere, so the study varies no quadrature for it.
-// - The applied voltages stay the same for every number of modes.
+// - The applied voltages stay the same for every number of modes, although the pull-in voltages, their units, differ.
 // - The effect of another number of modes is a property of the model, not an integration error, and is reported separately.
 // - Runs whose integrator is not restarted at the contact are also reported separately: simulate() always restarts it.
 // - A figure that changes visibly under imperceptible perturbations of the drives has no error. Its range over a cloud of
@@ -30,8 +30,8 @@ namespace softland {
 /// Errors of the figures in `studied_figures`, in the same order.
 using FigureErrors = std::array<double, studied_figures.size()>;
 
-/// Returns the relative_difference() of each studied figure from that of `reference`, by the values of Figure::counted(): a
-/// height below the significant rebound counts as that height. NaN for a figure that `reference` lacks.
+/// Returns the relative_difference() of each studied figure from that of `reference`; NaN for a figure that `reference` lacks.
+/// Rebounds below the significant height count as equal (Figure::counted()).
 [[nodiscard]] FigureErrors relative_errors(const Metrics& value, const Metrics& reference, const MetricsOptions& options);
 
 struct AccuracyOptions {

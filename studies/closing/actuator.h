@@ -1,4 +1,5 @@
-// The actuator that closes a switch: the drives whose waveforms the plain step and a search replace.
+// The actuator that closes a switch: the drives (electrodes, piezo) whose waveforms a search replaces. The plain step, with
+// which found waveforms are compared, replaces the waveforms of the same drives.
 #pragma once
 
 #include <cstddef>

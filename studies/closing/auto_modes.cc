@@ -21,7 +21,7 @@ namespace softland {
 namespace {
 
 constexpr double run_tolerance = 1e-6;  // relative tolerance of the integrator, whose errors are far below auto_modes_tolerance
-// Smallest size to which the change of a figure is relative, as a share of the figure's scale.
+// A change is relative to the figure, but at least to this share of the figure's scale: a figure near 0 would change too much.
 constexpr double least_share = 0.01;
 
 struct Judged {
@@ -135,7 +135,7 @@ AutoModes choose_modes(const SceneFile& file, const Progress& progress) {
   AutoModes found;
   for (int modes = 1; modes + further <= most_modes; ++modes) {
     // Static voltages take little time to compute: skip the closings with a number of modes for which the static voltages still
-    // change, except for the last number of modes.
+    // change. The last number is returned in any case, and its closing shows whether the switch touches.
     found = {.modes = modes, .moved = statics_moved(scene, modes)};
     if (!found.settled() && modes + further < most_modes) continue;
     const Judgement& own = with(modes);

@@ -8,8 +8,8 @@
 namespace softland {
 
 /// Returns the scene with as many modes as its closing needs, then without the effects that hardly change its figures. Adds a
-/// warning for each choice. A scene without "auto" is returned unchanged. `default_limits` is as in prepare(). Throws the
-/// exceptions of prepare(), and Interrupted if `progress` asks to stop.
+/// warning for each choice. A scene without "auto" is returned unchanged. `default_limits` requires the pull-in voltages of all
+/// electrodes, as in prepare(). Throws the exceptions of prepare(), and Interrupted if `progress` asks to stop.
 [[nodiscard]] PreparedScene choose(PreparedScene prepared, bool default_limits = false, const Progress& progress = {});
 
 /// Prepares a user's scene: prepare(), then choose(). Adds a warning if more modes change the static pull-in voltages

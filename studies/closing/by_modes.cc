@@ -36,8 +36,8 @@ double extrapolated(const std::map<int, double>& values) {
 // Rounds to ten digits: with many modes further digits are rounding errors, which depend on how a program is linked.
 double to_ten_digits(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.9e}", value)) : value; }
 
-// Computes a value with several numbers of modes by find(switch): for each switch of the ladder, in rising number of modes. If
-// the last value still changes by more than `much`, the switch with the most modes follows.
+// Computes the value find(switch) for each switch of `ladder`, which are the scene's switch with rising numbers of modes. If
+// the last value still changes by more than `much`, computes the value with the most modes as well.
 template <class Find>
 ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
   // Relative change of the last value above which the value is also computed with the most modes.
@@ -175,7 +175,7 @@ ByModes static_pull_in_by_modes(const ModeLadder& ladder, const Scene& scene, st
 }
 
 ByModes pulled_through_by_modes(const ModeLadder& ladder, std::size_t electrode, std::vector<double> volts, double own) {
-  constexpr double below = 0.95;  // ratio of the first tried voltage to the collapse voltage with fewer modes
+  constexpr double below = 0.95;  // the search starts at this ratio to the collapse voltage with fewer modes
   std::optional<ClosedEquilibrium> near;
   double found = own;
   return value_by_modes(ladder, [&](const Switch& model) {

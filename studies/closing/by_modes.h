@@ -29,7 +29,7 @@ struct ByModes {
   /// series. NaN if the values do not converge.
   double converged = std::numeric_limits<double>::quiet_NaN();
   /// Relative change from the first value to the limit, or to the value with the most modes if the limit is not known. Infinite
-  /// if the number exists with some numbers of modes only, NaN without values.
+  /// if the value exists with some numbers of modes only, NaN without values.
   [[nodiscard]] double moved() const;
   [[nodiscard]] bool is_worth_telling() const;
 };
@@ -68,8 +68,8 @@ class ModeLadder {
 /// stable.
 struct StabilityByModes {
   ByModes eigenvalues;  ///< smallest eigenvalue of the equilibrium, by number of modes [rad^2/s^2]
-  /// True if the equilibrium is stable with every number of modes that suffices to decide (judges_stability()), and in the
-  /// limit of many modes. Unset if no number suffices.
+  /// True if the equilibrium is stable in the limit of many modes, and with every number of modes that can show an instability
+  /// (judges_stability()). Unset if no number of modes can.
   std::optional<bool> stable;
   /// True if the equilibrium is stable with some of the computed numbers of modes and unstable with others.
   bool flips = false;
@@ -94,8 +94,8 @@ struct VoltagesByModes {
                                               double own);
 
 /// Returns the capacitance of the electrode that closes the switch, in the closed state under these drive voltages [F], for a
-/// switch that closes onto a dielectric. If more modes change the capacitance by at least mode_shift_worth_telling, the values
-/// include one with Structure::most_modes, the largest number of a closing.
+/// switch that closes onto a dielectric. If more modes change the capacitance by at least mode_shift_worth_telling, it is also
+/// computed with Structure::most_modes, the largest number of modes of a closing.
 [[nodiscard]] ByModes closed_capacitance_by_modes(const ModeLadder& ladder, std::span<const double> volts);
 /// Returns the smallest computed number of modes from which on values stay within mode_shift_worth_telling of the limit. None
 /// if the value with the most modes differs by more, or if the values do not converge.

@@ -33,9 +33,9 @@ bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, co
   return have < static_cast<std::ptrdiff_t>(cloud.size() + 2) || ill_conditioned(spread(std::move(values)));
 }
 
-// Returns the figures of the closing after a pull-in voltage in which drives are given (unit Vsp or Vdp) is decreased, and
-// increased, by its error: two entries per electrode. The error is a multiple of the change with a finer quadrature, plus the
-// width of the bracket of the voltage.
+// Repeats the closing with changed pull-in voltages, since drives in units of them (Vsp, Vdp) change too. Returns the figures
+// for each such electrode: with its pull-in voltages decreased by their errors, then increased. An error is a multiple of the
+// change with a finer quadrature; that of the dynamic pull-in voltage includes the precision of its search.
 std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switch& fine, const SwitchOptions& quadrature,
                                       const ClosingOptions& options, const MetricsOptions& figures, const Progress& progress) {
   const Scene& written = prepared.effects ? prepared.effects->described : prepared.scene;
@@ -45,7 +45,7 @@ std::vector<Metrics> at_other_pull_in(const PreparedScene& prepared, const Switc
     const auto at = std::find_if(electrodes.begin(), electrodes.end(), [&](const Electrode& e) { return e.name == name; });
     const auto k = static_cast<std::size_t>(at - electrodes.begin());
     const auto known = prepared.pull_in.find(name);
-    // Only voltage limits, which do not change the closing, are in units of this pull-in voltage.
+    // Skip an electrode with only voltage limits in units of its pull-in voltage: limits do not change the closing.
     if (known == prepared.pull_in.end()) continue;
     const Switch model(written.device, quadrature);
     const std::vector<double> bias = bias_of(written, k);
@@ -116,7 +116,8 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
                           .impact_velocity = first.impacts[k],
                           .at_threshold = at_threshold};
   };
-  // Of the touches before the runs diverge, the one with the smallest impact velocity is assumed to exist in some runs only.
+  // Returns the likely cause of the divergence: the touch with the smallest impact velocity among the first `count` touches,
+  // which may be missing in some runs.
   const auto gentlest = [&](std::size_t count) {
     const auto found = std::min_element(first.impacts.begin(), first.impacts.begin() + static_cast<std::ptrdiff_t>(count));
     return named(static_cast<std::size_t>(found - first.impacts.begin()), false);
@@ -171,7 +172,7 @@ Closing certify(const PreparedScene& prepared, const Progress& progress, int job
   std::erase_if(cloud, [](const Trajectory& t) { return !came_to_its_end(t); });
   std::vector<Metrics> runs;
   for (Trajectory& t : cloud) {
-    // The perturbations of the drive voltages are too small to change the closed equilibrium.
+    // Take the hold of the unperturbed run: the perturbed drive voltages hardly change the closed equilibrium.
     t.hold_force = c.trajectory.hold_force;
     t.is_held = c.trajectory.is_held;
     t.hold_capacitance = c.trajectory.hold_capacitance;

@@ -16,8 +16,8 @@ namespace softland {
 
 struct ClosedState {
   bool exists = false;  ///< true if an equilibrium of the closed switch with a contact force above zero exists
-  /// True if the equilibrium is stable with every number of modes that suffices to decide (judges_stability()); unset if none
-  /// does.
+  /// True if the equilibrium is stable with every number of modes that can show an instability (judges_stability()). Unset if
+  /// no number of modes can.
   std::optional<bool> stable;
   double contact_force = std::numeric_limits<double>::quiet_NaN();  ///< contact force in the closed equilibrium [N]
   /// Smallest eigenvalue of the stiffness in the closed equilibrium, relative to the mass [rad^2/s^2].

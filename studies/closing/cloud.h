@@ -16,7 +16,8 @@ namespace softland {
 
 struct CloudOptions {
   int runs = 16;
-  /// Smallest and largest relative change of the drives' levels, of either sign, in steps of a decade.
+  /// Bounds of the relative change of a drive's levels in a perturbed run. The change is random: its sign, and its size with a
+  /// uniform logarithm between these bounds.
   double smallest = 1e-9, largest = 1e-7;
   std::uint64_t seed = 1;
   int jobs = 1;  ///< number of threads for the perturbed runs; does not change the runs
@@ -39,8 +40,8 @@ struct Spread {
 /// Relative range of a figure over perturbed runs above which the figure is ill-conditioned: a thousand times the largest
 /// perturbation.
 inline constexpr double ill_conditioned_range = 1e-4;
-/// True if changes in the last digits of the drive voltages change a figure visibly; `values` is the range of the values by
-/// Figure::counted().
+/// True if changes in the last digits of the drive voltages change a figure visibly; `values` is the range of the values that
+/// Figure::counted() returns for the perturbed runs.
 [[nodiscard]] bool ill_conditioned(const Spread& values);
 
 }  // namespace softland

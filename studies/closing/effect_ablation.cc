@@ -223,8 +223,8 @@ void add_omissible_contact(const PreparedScene& prepared, std::vector<OmissibleE
   const Contact& contact = d.contacts.front();
   const auto section = [](const Contact& c) { return c.name.empty() ? std::string("contact") : "contact." + c.name; };
   if (contact.distribution == ContactDistribution::pad) {
-    // Height difference between the ends of the pad: pad length times slope of a cantilever that a force at its end bends by
-    // the contact gap.
+    // Magnitude of the effect: height difference between the ends of the pad, which is pad length times slope of a cantilever
+    // that a force at its end bends by the contact gap.
     const double rise = 1.5 * d.contact_gap() / d.structure.length * contact.pad_length;
     list.push_back({.effect = section(contact) + ".distribution",
                     .magnitude = {.name = "tilt of the pad", .unit = "m", .value = rise},
@@ -291,7 +291,7 @@ PreparedScene copy_without(const PreparedScene& prepared, const std::vector<Omis
   const auto drops_contact = [&](const OmissibleEffect& e) {
     return std::ranges::any_of(prepared.scene.device.contacts, [&](const Contact& c) { return e.effect == "contact." + c.name; });
   };
-  // Key metrics.closed says how several contacts make the connection; a single contact makes it alone.
+  // Remove metrics.closed if one contact is left: the key says whether the connection needs any or all of several contacts.
   const auto left =
       prepared.scene.device.contacts.size() - static_cast<std::size_t>(std::ranges::count_if(effects, drops_contact));
   if (left < 2) file.erase("metrics.closed");

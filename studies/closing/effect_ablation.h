@@ -58,8 +58,8 @@ struct ClosingBound {
             .seconds = std::max(least_seconds, seconds_over_own * own.seconds)};
   }
 };
-/// Runs a closing within a bound on its cost. `what` names the closing in progress reports; `done` and `share` are as in
-/// observer().
+/// Runs a closing within a bound on its cost. `what` names the closing in progress reports. The closing is the `share` of a
+/// computation of which `done` is complete.
 [[nodiscard]] BoundedClosing bounded_closing(const PreparedScene& prepared, const Switch& model, const ClosingBound& bound,
                                              const Progress& progress, const std::string& what, double done = 0,
                                              double share = 1);
@@ -84,8 +84,8 @@ struct EffectAblation {
 [[nodiscard]] PreparedScene copy_without(const PreparedScene& prepared, const std::vector<OmissibleEffect>& effects);
 
 /// Returns the largest relative difference between two closings of initial contact time t_i, impact velocity v_i and highest
-/// rebound B_H, by Figure::counted(). Infinite if a figure exists in one closing only, and if the scene's own closing reaches
-/// no contact.
+/// rebound B_H; rebounds below the significant height count as equal (Figure::counted()). Infinite if a figure exists in one
+/// closing only, and if the scene's own closing reaches no contact.
 [[nodiscard]] double influence(const Metrics& own, const Metrics& other, const MetricsOptions& options);
 
 /// Simulates the closing without each of the effects in turn. If `progress` asks to stop, the list ends with the last complete

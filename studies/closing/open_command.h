@@ -19,8 +19,9 @@ struct OpenCommand {
 /// Finds the command to open that these drive signals, one per drive of the switch, give. The command is the beginning of the
 /// last fall of the drives to levels under which no closed state is stable and the open state is stable. If the switch starts
 /// closed, the first such fall is the command. Levels after the simulated time, up to the end of the waveforms, count as well.
-/// A fall is a time in which the voltages of the electrodes that cause the opening only approach 0 V; a downward jump begins a
-/// fall. None if the hold levels keep the switch closed or collapse it, or if the drives never kept it closed.
+/// A fall is a time span in which the voltages of the electrodes that cause the opening approach 0 V without interruption; a
+/// downward jump always begins a new fall. None if the hold levels keep the switch closed or collapse it, or if the drives
+/// never kept it closed.
 [[nodiscard]] std::optional<OpenCommand> open_command(const Switch& model, const std::vector<Signal>& signals, StartState start);
 
 /// Finds the command to open that these drive signals give; its time is simulate.open_at if the scene has this key. The command
@@ -35,8 +36,8 @@ struct OpenCommand {
 /// their levels just before the command. Returns the scene unchanged if there is no command, and if the scene starts closed.
 [[nodiscard]] PreparedScene closing_of(const PreparedScene& prepared);
 
-/// Returns the deflection of the contacts that make the electrical connection, in a state of the beam as observers of a closing
-/// receive it (model/closing/connection.h) [m].
+/// Returns the deflection of the connection in the state q [m]: the contact gap less the separation of the contact that decides
+/// the connection. This is the contact farthest from its contact plane if the connection needs all contacts, else the nearest.
 [[nodiscard]] double connection_deflection(const Switch& model, const Eigen::VectorXd& q);
 
 /// Returns the options of metrics() for a run that opens on command under these drive signals. The options contain the time of

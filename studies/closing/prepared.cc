@@ -165,7 +165,7 @@ double periods_of(const Waveform& waveform, double window) {
 
 /// Returns the default simulated time (window) of a scene that closes [s]. It is six periods of the first mode, or four times
 /// the time of first contact under steps to the hold levels if this is longer, as in a thick gas. A damped switch moves slowly
-/// just above pull-in, so first contact is searched for ten times six periods; a thousand times if no open equilibrium exists.
+/// just above pull-in, so first contact is awaited for up to 60 periods; for up to 6000 if no open equilibrium exists.
 double default_window(const Switch& model, const std::vector<Signal>& signals) {
   constexpr double periods = 6, closings = 4, loose = 1e-4;
   constexpr long most_steps = 100'000;

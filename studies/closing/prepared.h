@@ -1,5 +1,5 @@
-// A scene that is ready to run: its switch is composed, its pull-in voltages are computed if a unit needs them, and every drive
-// is a signal in volts.
+// A scene that is ready to run: its switch is composed, its pull-in voltages are computed if voltages are in units of them, and
+// every drive is a signal in volts.
 #pragma once
 
 #include <functional>
@@ -27,7 +27,8 @@ struct ElectrodePullIn {
 };
 
 /// Returns the constant voltages (bias) of the other drives under which pull-in voltages of drive number `drive` are computed
-/// [V]: those of Scene::standing, with this drive at 0 V.
+/// [V]: their hold voltages, or 0 V for hold voltages in units of pull-in voltages (Scene::standing). The entry of `drive`
+/// itself is 0.
 [[nodiscard]] std::vector<double> bias_of(const Scene& scene, std::size_t drive);
 
 /// Note about an electrode with a face on either side of the beam that pulls the switch at rest away from the contact.
@@ -81,7 +82,8 @@ struct PreparedScene {
   }
   /// Returns the applied voltages for these commanded signals, one per drive, in the order of drive_names().
   [[nodiscard]] std::vector<Signal> applied(std::vector<Signal> commanded) const;
-  /// Returns the applied voltage of drive k for a commanded signal, with gain, offset and delay of the scene, or with `errors`.
+  /// Returns the applied voltage of drive k for a commanded signal. Gain, offset and delay of its source are those of the
+  /// scene, or `errors`.
   [[nodiscard]] Signal applied(std::size_t k, const Signal& commanded) const { return applied(k, commanded, drives[k].errors); }
   [[nodiscard]] Signal applied(std::size_t k, const Signal& commanded, const SourceErrors& errors) const;
   /// Returns the commanded signal as the samples of drive k's converter; unchanged if the source of the drive does not sample.

@@ -46,7 +46,7 @@ std::vector<Eigen::VectorXd> at_touch(const Switch& model) {
 
 SwitchOptions quadrature_for(double accuracy, int modes) {
   // Quadrature points per decimal digit of accuracy, and least number of points. A mode has as many half waves as its number,
-  // each with two points.
+  // and each half wave needs two points.
   constexpr double points_per_digit = 4, fewest = 8;
   return {.points_per_length = std::max({fewest, points_per_digit * -std::log10(accuracy), 2.0 * modes + 4})};
 }
@@ -108,8 +108,8 @@ ResolvedSwitch resolved_switch(const Device& device, double accuracy, std::optio
 }
 
 Switch switch_like(const Device& device, const Switch& nominal, const SwitchOptions& quadrature, double accuracy) {
-  // Ratio of the electrode gap that remains at contact to that of the nominal switch, below which the number of points is
-  // checked again.
+  // Ratio to the nominal switch of the electrode gap that remains at contact; below this ratio loads are steeper, so that the
+  // number of quadrature points is checked again.
   constexpr double nearer = 0.95;
   const auto gap_at_touch = [](const Device& d) { return 1 - d.gap.contact / d.gap.electrode; };
   Switch own(device, quadrature, &nominal);
