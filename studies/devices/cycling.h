@@ -59,9 +59,9 @@ class CycledSwitch {
   [[nodiscard]] Cycles run(const CycleTimes& times, bool is_told, const Progress& progress = {}) const;
   /// True if the switch closes and opens in every cycle as in the first cycle. The run ends at the first cycle that differs.
   [[nodiscard]] bool is_steady(const CycleTimes& times, const CycleTolerances& tolerances, const Progress& progress = {}) const;
-  /// Times that the closing part (`on`) and the opening part (`off`) of a cycle take [s]. A `rest` time lasts until the switch
-  /// is at rest; a `least` time until first contact or the end of the waveform, the least that a part needs. A time is infinite
-  /// if the switch does not reach that state.
+  /// Durations of the closing part (`on`) and the opening part (`off`) of a cycle [s]. With `rest` durations the part ends when
+  /// the switch is at rest. With `least` durations it ends with its waveform, a closing not before first contact. A duration is
+  /// infinite if the switch does not come to rest, or does not touch.
   struct PartTimes {
     double rest_on = std::numeric_limits<double>::infinity(), rest_off = std::numeric_limits<double>::infinity();
     double least_on = std::numeric_limits<double>::infinity(), least_off = std::numeric_limits<double>::infinity();
@@ -101,7 +101,7 @@ struct ScanOptions {
 };
 
 /// Simulates cycles at increasing rates. At the first rate every cycle begins and ends at rest; the first rate is lowered until
-/// its cycles are steady. At the last rate the closing or the opening is too short for its waveform.
+/// its cycles are steady. The last rate leaves just enough time for the waveforms and for first contact.
 [[nodiscard]] RateScan scan_rates(const CycledSwitch& cycled, const ScanOptions& options, const Progress& progress = {});
 
 struct CyclingOptions {

@@ -115,8 +115,8 @@ std::vector<Derivatives::Variable> variables_of(const DeviceSpread& spread) {
   return all;
 }
 
-// Computes the derivatives of the figures under these drive signals. `by` has the derivatives of switch and signals; `places`
-// are the indices of its quantities among the varied quantities.
+// Computes the derivatives of the figures under these drive signals. `by` has the derivatives of switch and signals by some of
+// the varied quantities; `places` are the indices of these among all varied quantities.
 void derive(Derivatives& found, const PreparedScene& nominal, const std::vector<Signal>& signals, const Changes& by,
             const std::vector<std::size_t>& places, const Eigen::MatrixXd& correlation, const DerivativeOptions& options,
             const Progress& progress) {

@@ -119,8 +119,8 @@ struct MeasuredQuantities {
 inline constexpr const char* not_measured = "its pull-in voltage, or what its piezo does, cannot be measured";
 
 /// Measures devices relative to the nominal device, with the errors of a calibration. A closing time gives the factor s of a
-/// device's voltages: under a step to closing_step Vdp the device closes in the time that the nominal device takes under
-/// closing_step Vdp / s.
+/// device's voltages. Under a step to closing_step Vdp (Vdp of the nominal device) the device takes as long to close as the
+/// nominal device under a step to closing_step Vdp / s.
 class PullInMeter {
  public:
   /// Keeps a reference to `nominal`, whose closing electrode is measured. `precision` is the relative precision of pull-in
@@ -154,8 +154,8 @@ class PullInMeter {
   [[nodiscard]] double time_of(const Switch& model, double step) const;
 
   struct ToldVolts {
-    // Closing time of the nominal device under a step [s]; voltage factor of a device that takes this time under a step to
-    // closing_step Vdp.
+    // Closing time of the nominal device under a step to closing_step Vdp / `volts` [s]. `volts` is the voltage factor of a
+    // device that takes this time under a step to closing_step Vdp.
     double time, volts;
   };
 
@@ -232,8 +232,8 @@ struct DeviceClosing {
   const std::vector<Signal>* signals = nullptr;
   std::vector<double> gains = {};  ///< factor of each drive's signal; empty if all factors are 1
   ClosingOptions run;
-  bool measures_drive_energy = false;  ///< true to measure the drive energy in SIMD lanes as well; closings one by one always
-                                       ///< measure the energy
+  /// True to measure the drive energy in SIMD lanes; closings that are simulated one by one always measure the energy.
+  bool measures_drive_energy = false;
 };
 /// Closes several devices. Devices whose laws are available in SIMD lanes (model/ensemble/ensemble_closings.h) are closed
 /// together, the others one by one. All have the tolerance of the first device. An outcome does not depend on the other
@@ -275,7 +275,7 @@ class DeviceCloser {
   DeviceDrives device_drives_;
   std::optional<PullInMeter> meter_;
   std::vector<std::vector<Signal>> nominal_signals_;  // drive signals of every set of waveforms on the nominal device
-  // Command to open that each set of waveforms gives on the nominal device; none if it gives none.
+  // Command to open that each set of waveforms gives on the nominal device; none for waveforms without this command.
   std::vector<std::optional<OpenCommand>> nominal_commands_;
   std::vector<std::optional<ClosedEquilibrium>>
       nominal_closed_;  // closed equilibrium of the nominal device under the hold levels of each set of waveforms

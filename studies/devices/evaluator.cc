@@ -333,7 +333,7 @@ struct Evaluator::Place {
   PreparedScene scene;                 ///< scene whose [spread] has the input columns that vary the device
   std::vector<std::size_t> of_device;  ///< index of the input column for each varied quantity of the [spread] of `scene`
   std::vector<WaveformKey> of_waveforms;
-  MeasuredUnits known;  ///< scales the voltages of the waveforms with the Vdp of a device; empty for voltages that do not scale
+  MeasuredUnits known;  ///< scale factors of the waveforms' voltages if they scale with the Vdp of a device; else empty
 };
 
 Evaluator::Place Evaluator::place_of(std::span<const double> row, const Progress& progress) const {

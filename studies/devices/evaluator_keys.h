@@ -28,7 +28,7 @@ namespace softland {
 [[nodiscard]] std::string unit_of_parameter(ParameterKind kind, const std::string& drive);
 /// Returns the quantity that the scene has at a key; none if the key is missing or is not a quantity.
 [[nodiscard]] std::optional<Quantity> written_quantity(const SceneFile& file, const std::string& path, std::size_t element);
-/// Returns a scene whose [spread] varies these keys, each by its value: a value computed from a factor would be rounded.
+/// Returns a scene whose [spread] varies each of these keys by its value. A factor on the nominal value would round the value.
 [[nodiscard]] SceneFile scene_that_varies(SceneFile file, const std::vector<std::string>& keys);
 
 }  // namespace softland

@@ -16,9 +16,10 @@ namespace {
 
 bool is_held(const ClosedRange& device, double level) { return device.release <= level && !(device.pulled_through < level); }
 
-// Starting point of the search for the collapse voltage of a device: a level just below that of the nominal device.
+// Starting point of the search for the collapse voltage of a device: the nominal device at a level below its own collapse
+// voltage.
 struct Nominal {
-  double level = std::numeric_limits<double>::quiet_NaN();  // level of the electrode a little below the collapse voltage [V]
+  double level = std::numeric_limits<double>::quiet_NaN();  // level of the electrode [V]
   std::optional<ClosedEquilibrium> closed;                  // closed equilibrium of the nominal device at this level
 };
 

@@ -2,7 +2,7 @@
 //
 //   pull_in       static pull-in voltage, at which a slow ramp closes the switch (model/pull_in.h) [V]
 //   release       voltage at which a slow ramp opens the switch again [V]
-//   frequency     of small undamped vibrations of the open switch about its rest at a level [Hz]
+//   frequency     of small undamped vibrations of the open switch about its rest position at a level [Hz]
 //   capacitance   of an electrode of the open switch at rest at a level [F]
 //   closing_time  time of the first touch under a step to a level, or under waveforms [s]
 //   contact       times of the first edges of the contact's state under waveforms: contact, first opening, next contact [s]

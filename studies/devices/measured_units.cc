@@ -92,7 +92,8 @@ double PullInMeter::time_of(const Switch& model, double step) const {
   return softland::closing_time(model, electrode_, step, bias_of(nominal_->scene, electrode_), periods_to_close / frequency());
 }
 
-// Measures the closing times of the nominal device under steps to closing_step Vdp / s, for voltage factors s in [0.75, 1.19].
+// Measures the closing times of the nominal device (pull-in voltage Vdp) under steps to closing_step Vdp / s, for voltage
+// factors s of devices in [0.75, 1.19].
 void PullInMeter::learn_times() {
   constexpr double least = 0.75, most = 1.19;
   constexpr int steps = 88;

@@ -89,8 +89,9 @@ bool NearbyDevices::changes_signals(std::size_t i) const {
   return meter_ || std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return key.drive.has_value(); });
 }
 
-// True if the drive signals one step below and above the current device in quantity i have as many pieces as its own. Otherwise
-// they have no derivative: an edge of a waveform appears, disappears or becomes the first edge of the time axis.
+// True if the drive signals one step below and above the current device in quantity i have as many pieces as those of the
+// current device. Otherwise the signals have no derivative: an edge of a waveform appears, disappears or becomes the first edge
+// of the time axis.
 bool NearbyDevices::keeps_pieces(std::size_t i) {
   const auto pieces = [&](double side) {
     std::vector<std::size_t> counts;

@@ -156,7 +156,7 @@ std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
   };
   for (std::size_t i = 0; i < measured.size() && measured.size() > 1; ++i)
     add(std::string(measured[i].name), exactly(std::span(measured).subspan(i, 1)));
-  if (measured.size() > 2 && drive.calibration.piezo_error) {  // also all measurements but that of the piezo
+  if (measured.size() > 2 && drive.calibration.piezo_error) {  // also compare all measurements except that of the piezo
     const auto others = std::span(measured).first(measured.size() - 1);
     add(named(others), exactly(others));
   }

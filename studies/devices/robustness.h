@@ -81,7 +81,7 @@ struct Robustness {
   double tolerance = 0;  ///< relative tolerance of the integrator in the closings
 };
 
-/// Keys of the figures that sensitivity() and box_and_chaos() explain.
+/// Keys of the figures for which sensitivity() and box_and_chaos() compute results.
 inline constexpr std::array explained_figures{key_of(&Metrics::initial_contact_time), key_of(&Metrics::largest_impact_velocity),
                                               key_of(&Metrics::major_bounce_height)};
 
@@ -118,7 +118,7 @@ struct NamedDrive {
   Calibration calibration = {};
 };
 
-/// Closes the devices of the [spread] of `nominal` under the plain step to the same hold levels, then under each set of
+/// Closes the devices of the [spread] of `nominal` under the plain step to the scene's hold levels, then under each set of
 /// waveforms. Throws InvalidInput for a scene without [spread] or without contact, for a drive that the scene lacks, and for
 /// exceeded limits of a drive.
 [[nodiscard]] Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive>& drives,
@@ -141,8 +141,8 @@ struct NamedDrive {
                                      const Progress& progress = {});
 
 /// Returns the scene of a device of the ensemble under one of the sets of waveforms, with the errors of the device's sources
-/// written out. `simulate` runs this scene to the same closing, within the limits of Ensemble::scene(). An exception is a sine
-/// with errors of times or voltages, which becomes a table (DeviceDrives::written).
+/// written out. `simulate` of this scene gives the closing of the device in the ensemble, within the limits of
+/// Ensemble::scene(). An exception is a sine with errors of times or voltages, which becomes a table (DeviceDrives::written).
 [[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t device,
                                         const RobustnessOptions& options);
 

@@ -16,8 +16,8 @@ namespace {
 
 // Levels, before contact, of the electrode that holds the closed switch, as shares of its hold level, in increasing order.
 constexpr std::array low_levels{0.0, 0.12, 0.24, 0.36};
-// Sufficient distance from the voltage at which the switch touches its contact to the limit of the voltage source, in standard
-// deviations of that voltage over devices.
+// The search for a stable approach ends if the voltage at which the switch touches its contact is this far from the limit of
+// the voltage source [standard deviations of the voltage over devices].
 constexpr double enough_deviations = 2.5;
 // Coordinates of the unit cube that are one standard deviation of a normal number below and above the median.
 constexpr double one_below = 0.15865525393145707, one_above = 1 - one_below;
@@ -84,8 +84,8 @@ class Finder {
         return touching_voltage(nominal_, builder.device(std::move(u)), found);
       };
       const std::optional<double> above = at(one_above), below = at(one_below);
-      // If the device on one side has no stable path to contact, use the difference between the other device and the nominal
-      // design. If both have none, use the distance to the limit of the voltage source.
+      // If one of the two devices has no stable path to contact, use the difference between the other device and the nominal
+      // design. If neither has a path, use the distance to the limit of the voltage source.
       const double slope = above && below ? (*above - *below) / 2
                            : above        ? *above - found.reaches
                            : below        ? found.reaches - *below
@@ -112,8 +112,8 @@ double StableApproach::touch_places() const {
 }
 
 double shortest_rise(const PreparedScene& nominal) {
-  // Duration of the shortest rise in periods of the first mode: a ramp of one period, and half a period between the two
-  // impulses.
+  // Duration of the shortest rise in periods of the first mode: the sum of two ramps of one period each (the two impulses of
+  // the input shaper), the second of which starts half a period later.
   constexpr double periods = 1.5;
   return periods * 2 * pi / nominal.model.basis().angular_frequencies()[0];
 }

@@ -402,8 +402,8 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Progress& progress
   return row;
 }
 
-// Returns the numbers of a command's record as the row of a point. A column is unset if this record lacks the number, although
-// the record of the plan's scene, from which the columns come, has it.
+// Returns the numbers of a command's record as the row of a point. The columns come from the record of the exploration's own
+// scene; a column is unset if the record of this point lacks the number.
 PointRow Exploration::recorded(const SceneFile& scene, int jobs, const Progress& progress) {
   const OtherStudy::Record record = other_->record(scene, plan_.options(), plan_.seed(), jobs, progress);
   PointRow row{.status = record.status, .reason = {}, .figures = std::vector<double>(figures_.size(), Metrics::unset)};
@@ -439,7 +439,7 @@ PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Progress
   search.seed = plan_.seed();
   search.jobs = jobs;
   search.stop = progress.stop;
-  // End an interrupted search here, before it verifies results that are not stored.
+  // End an interrupted search here, since it is not stored and a verification of its results would be in vain.
   search.on_preparation = [&progress](std::string_view, double) { progress.throw_if_stopped(); };
   const OptimizeResult found = optimize(scene, search);
   if (found.search.termination == Termination::interrupted) throw Interrupted();

@@ -107,7 +107,7 @@ class Exploration {
   [[nodiscard]] PreparedScene prepared(const SceneFile& scene, bool default_limits, const Progress& progress);
 
   Plan plan_;
-  std::optional<PointStudy> study_;  // study that the exploration runs at every point; none if the study is `other_`
+  std::optional<PointStudy> study_;  // study that the exploration runs at every point; none for a registered study (`other_`)
   std::optional<OtherStudy> other_;
   std::vector<PointFigure> figures_;
   AskedFigures asked_ = {};              // figures that the scene of the exploration requests

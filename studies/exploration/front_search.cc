@@ -104,7 +104,7 @@ class FrontSearch {
   const FrontOptions& options_;
   Progress progress_;
   std::mutex mutex_;
-  // Computed rows by position in the search box, until the number of their point is known.
+  // Computed rows by position in the search box. A row is stored when the search reports the number of its point.
   std::map<std::vector<double>, StoredRow> fresh_;
   FrontFound found_;
 };

@@ -17,8 +17,8 @@ namespace softland {
 /// stores this exploration, the columns are those in the file.
 [[nodiscard]] Exploration exploration_for(Plan plan, const std::filesystem::path& store, const Progress& progress = {},
                                           const OtherStudies& others = {});
-/// Throws InvalidRequest about the field `shard` if the exploration cannot be divided into parts, as a search for a Pareto
-/// front.
+/// Throws InvalidRequest about the field `shard` if the exploration cannot be divided into parts, such as one that searches a
+/// Pareto front.
 void require_part(const Exploration& exploration, const Shard& shard);
 /// Returns the plan (stored request) of the exploration in a database file. Throws InvalidInput if the file contains a search
 /// instead.
