@@ -76,8 +76,8 @@ Judgement judged(const SceneFile& file, int modes, const Progress& progress) {
   return {.figures = std::move(list), .scene = p};
 }
 
-// Returns the largest relative change of any figure between two closings; a figure that exists in only one of them changes by
-// 1.
+// Returns the largest relative change of any figure between two closings; a figure that exists in only one of them changes by 1
+// (100 %).
 double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
   double most = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {

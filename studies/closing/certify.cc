@@ -186,7 +186,7 @@ Closing certify(const PreparedScene& prepared, const Progress& progress, int job
     const double own = figure.value(c.metrics), other = figure.value(better);
     double error = error_safety * std::abs(own - other) + shared * c.tolerance * std::abs(own);
     const double unmoved = judge_is_better ? other : own;
-    // Pairs of figures: with a pull-in voltage decreased by its error, then increased.
+    // Add the larger of the changes of the figure if a pull-in voltage is decreased, or increased, by its error.
     for (std::size_t i = 0; i + 1 < moved.size(); i += 2) {
       error += std::fmax(std::abs(figure.value(moved[i]) - unmoved), std::abs(figure.value(moved[i + 1]) - unmoved));
     }

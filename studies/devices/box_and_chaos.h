@@ -85,8 +85,7 @@ struct BoxAndChaos {
                                         const RobustnessOptions& options, const BoxAndChaosOptions& effort = {},
                                         const Progress& progress = {});
 
-/// Returns the scene of a device at an end of the range of a figure. `simulate` of this scene gives the closing in
-/// BoxDevice::outcome.
+/// Returns the scene of a device at an end of the range of a figure. Simulating it gives BoxDevice::outcome.
 [[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, const BoxDevice& device,
                                         const RobustnessOptions& options);
 

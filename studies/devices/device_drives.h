@@ -48,8 +48,8 @@ class DeviceDrives {
   /// Returns the ratios of signals() to without_gains(), one per drive. None if the signals differ by more than a constant
   /// factor, because of scale factors of the device, offsets, delays or jitter.
   [[nodiscard]] std::optional<std::vector<double>> gains(const DeviceUnits& units, const std::vector<double>& values) const;
-  /// Returns the drives of a device as for the nominal device (unscaled), with sources whose gain is 1; `nominal` as in
-  /// signals().
+  /// Returns the applied voltages for the waveforms `nominal` (as in signals()), without scale factors and with sources whose
+  /// gain is 1.
   [[nodiscard]] std::vector<Signal> without_gains(const std::vector<Waveform>& nominal) const;
   /// Returns the errors of the voltage source of drive k for these values of the varied quantities, except its jitter.
   [[nodiscard]] SourceErrors errors(std::size_t k, const std::vector<double>& values) const;

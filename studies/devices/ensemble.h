@@ -38,7 +38,7 @@ class Ensemble {
   /// Makes devices 0 to size - 1 of this scene. Their waveforms have the voltages of the nominal device. Keeps a reference to
   /// `nominal`. Throws InvalidInput if the scene has no [spread], and the exceptions of SamplePoints.
   Ensemble(const PreparedScene& nominal, std::uint64_t size, std::uint64_t seed = 1, PointSet points = PointSet::sobol);
-  /// Makes the devices at the points of a design for Sobol' indices, the shares of a figure's variance.
+  /// Makes the devices at the points of a design for Sobol' indices, the shares of a figure's variance by varied quantity.
   Ensemble(const PreparedScene& nominal, const SobolDesign& design);
 
   [[nodiscard]] const PreparedScene& nominal() const { return *nominal_; }

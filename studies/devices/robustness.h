@@ -141,8 +141,8 @@ struct NamedDrive {
                                      const Progress& progress = {});
 
 /// Returns the scene of a device of the ensemble under one of the sets of waveforms, with the errors of the device's sources
-/// written out. `simulate` of this scene gives the closing of the device in the ensemble, within the limits of
-/// Ensemble::scene(). An exception is a sine with errors of times or voltages, which becomes a table (DeviceDrives::written).
+/// written out. Simulating this scene gives the closing of the device in the ensemble, within the limits of Ensemble::scene().
+/// An exception is a sine with errors of times or voltages, which becomes a table (DeviceDrives::written).
 [[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t device,
                                         const RobustnessOptions& options);
 

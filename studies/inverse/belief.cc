@@ -135,7 +135,7 @@ std::vector<VectorXd> Belief::resampled(std::size_t count, Draws& draws) const {
 
 namespace {
 
-// Residuals of the first contact times of one device in all shots, and their derivatives by its coordinates z.
+// Residuals of the first contact times of one device in all shots (closings), and their derivatives by its coordinates z.
 struct LinearTouches {
   VectorXd residuals;
   MatrixXd slopes;
@@ -389,7 +389,7 @@ Belief BeliefUpdate::sampled() {
 
 TouchMisfit touch_misfit(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief, Draws& draws,
                          const Progress& progress) {
-  // 0.999 quantile of the standard normal distribution, for the bound that one device in a thousand exceeds.
+  // 0.999 quantile of the standard normal distribution, for the misfit that one device in a thousand exceeds.
   constexpr double one_in_a_thousand = 3.0902;
   const auto stayed_open = [](const LearnedShot& shot) { return !first_touch(shot.record).has_value(); };
   std::vector<LearnedShot> counted(shots.begin(), shots.end());

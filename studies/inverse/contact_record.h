@@ -10,8 +10,8 @@
 
 namespace softland {
 
-/// Errors of the instruments of a laboratory. All but `unseen` are standard deviations. A simulated laboratory has these
-/// errors, except `trigger_delay`, and the estimate of a device from its records assumes these errors.
+/// Errors of the instruments of a laboratory. All but `unseen` and `capacitance` are standard deviations. A simulated
+/// laboratory has these errors, except `trigger_delay`, and the estimate of a device from its records assumes these errors.
 struct LaboratoryErrors {
   double edge_error = 50e-9;  ///< error of a recorded time at which the contact closes or opens [s]
   double unseen = 100e-9;     ///< openings of the contact that are shorter than this time are not recorded [s]
@@ -28,8 +28,9 @@ struct LaboratoryErrors {
 
 class SceneFile;
 
-/// Returns the errors of typical instruments for this scene. The errors of edges, short openings and the trigger are at most a
-/// 200th, a 100th and a 48th of the period of the first mode. Throws InvalidInput for a scene that cannot be read.
+/// Returns the errors of typical instruments for this scene. The error of edges, the shortest recorded opening and the trigger
+/// delay are at most a 200th, a 100th and a 48th of the period of the first mode. Throws InvalidInput for a scene that cannot
+/// be read.
 [[nodiscard]] LaboratoryErrors usual_errors(const SceneFile& file);
 
 /// A change of the contact's state, from open to closed or back.

@@ -4,8 +4,8 @@
 //   H = J^T W J,  W the weights of the robust loss       Fisher information of the data
 //   C = (H + P)^-1,  P the Fisher information of the prior       covariance of the estimate
 //
-// A direction of z is weak if the data have less information about it than the prior, that is, if the eigenvalue of H is below
-// 1. The data cannot separate the unknowns along a weak direction.
+// A direction of z is weak if the data have less information about it than the prior: it is an eigenvector of H with an
+// eigenvalue below 1, the information of the prior in units of z. The data cannot separate the unknowns along a weak direction.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,8 +34,8 @@ struct Estimate {
   std::vector<WeakDirection> weak;  ///< weak directions, which the data hardly determine, in order of increasing information
 
   [[nodiscard]] double deviation(std::size_t i) const;
-  /// Returns the relative decrease of the root mean square of all standard deviations if one more measurement is made. `slopes`
-  /// are the derivatives of this measurement by z, in units of its error.
+  /// Returns the relative decrease of the root mean square of the standard deviations of all unknowns if one more measurement
+  /// is made. `slopes` are the derivatives of this measurement by z, in units of its error.
   [[nodiscard]] double reduction(const std::vector<Eigen::VectorXd>& slopes) const;
 };
 

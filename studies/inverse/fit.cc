@@ -90,8 +90,8 @@ std::vector<std::string> doubts_of(const Fit& fit, const ManyEnds& all, const Le
   return doubts;
 }
 
-// One stage of a fit, with the rows of traces up to some time: the problem with these data, and the ends of the searches from
-// several starts.
+// One stage of a fit: the problem with the rows of recorded curves (traces) up to some time, and the ends of the searches for
+// its solution from several starts.
 struct Stage {
   std::unique_ptr<const FitProblem> problem;
   ManyEnds all = {};
@@ -175,7 +175,7 @@ TraceMisfit misfit(const Stage& stage, std::size_t measurements, const TraceWind
 }
 
 // Returns, by measurement, whether the model describes the rows of a recorded curve that were added last as well as the earlier
-// rows: the root mean square of their residuals is larger by chance at most.
+// rows. The root mean square of their residuals may be larger only by chance, up to three standard deviations.
 std::vector<bool> described(const TraceMisfit& newest, const TraceMisfit& before) {
   constexpr double least = 0.15, deviations = 3;
   std::vector<bool> all;
@@ -196,7 +196,7 @@ bool is_linear(const Stage& stage) {
   VectorXd values, moved;
   MatrixXd slopes;
   if (!model.predict(end.x, values, &slopes)) return false;
-  // Square roots of the weights of the residuals, divided by the errors of the data.
+  // Factors that convert changes of the data to units of their errors, reduced by the weights of the robust loss.
   const VectorXd weights = problem.weights(problem.residuals(values)).cwiseSqrt().cwiseQuotient(problem.errors);
   const MatrixXd weighted = weights.asDiagonal() * slopes;
   const MatrixXd covariance = estimate(weighted.transpose() * weighted, problem.prior).covariance;

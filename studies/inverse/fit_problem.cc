@@ -22,7 +22,8 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Returns the name of the entry of [spread] that is called `name` or varies the key `name` alone; `name` without such an entry.
+// Returns the name of the entry of [spread] that is called `name` or varies the key `name` alone; `name` itself if there is no
+// such entry.
 std::string entry_of(const DeviceSpread& spread, const std::string& name) {
   for (const SpreadVariable& v : spread.variables) {
     if (v.name == name) return v.name;

@@ -199,7 +199,8 @@ std::vector<DeviceUnits> predicted_factors(const Eigen::MatrixXd& x, const std::
   return units;
 }
 
-// Returns the root mean square error of the predicted factors, and its square divided by the variance of the best factors.
+// Returns the root mean square error of the logarithm of a predicted factor, and the square of this error divided by the
+// variance of the best factor's logarithm.
 std::pair<double, double> misses(const std::vector<DeviceUnits>& predicted, const std::vector<DeviceUnits>& best, Factor factor) {
   std::vector<double> wanted;
   double square = 0;

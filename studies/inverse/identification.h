@@ -43,14 +43,14 @@ struct Prediction {
   std::string name;
   /// Indices in IdentificationStudy::figures of the figures from which the factors are predicted.
   std::vector<std::size_t> figures;
-  /// Errors of the predicted logarithms of the best factors of volts, of time and of a piezo's volts. The first is the root
-  /// mean square over the devices to which the prediction was not fitted; the second is its square over the variance of the
-  /// logarithm. NaN if nothing is fitted; for a piezo also if it is not driven.
+  /// Errors of the predicted logarithms of the best factors of volts, of time and of a piezo's volts. A `miss` is the root mean
+  /// square over the devices to which the prediction was not fitted; `unexplained` is its square over the variance of the best
+  /// factor's logarithm. NaN if nothing is fitted, and for a piezo that the waveform does not drive.
   double volts_miss = Metrics::unset, time_miss = Metrics::unset, piezo_miss = Metrics::unset;
   double volts_unexplained = Metrics::unset, time_unexplained = Metrics::unset, piezo_unexplained = Metrics::unset;
   /// True if closings with the predicted factors were simulated; only then are `score` and the members after it set.
   bool is_judged = false;
-  double score = Metrics::unset;  ///< 95th percentile over the devices of the score for `bounce`
+  double score = Metrics::unset;  ///< 95th percentile over the devices of the score s_k (top of this file)
   Yield bounce_free;
   EstimatedQuantile impact_speed;    ///< 95th percentile over the devices of the largest impact velocity of all touches [m/s]
   EstimatedQuantile rebound_height;  ///< 95th percentile over the devices of the highest rebound [m]
@@ -81,9 +81,9 @@ struct IdentificationStudy {
 inline constexpr std::uint64_t fewest_measured = 16, most_measured = 100'000;
 
 /// Finds the figures that determine a device's waveform. Assumes the usual process variation if the scene has none. Throws
-/// InvalidInput for a scene without contact, or without an electrode that pulls in; for a plain step, which has no soft
-/// closing; for samples outside [fewest_measured, most_measured]. Throws Interrupted if `progress` asks to stop before the best
-/// factors of all devices are known.
+/// InvalidInput for a scene without contact, or without an electrode that pulls in; for a waveform that is a plain step, which
+/// cannot close the switch softly; for a number of devices (`samples`) outside [fewest_measured, most_measured]. Throws
+/// Interrupted if `progress` asks to stop before the best factors of all devices are known.
 [[nodiscard]] IdentificationStudy identify(SceneFile file, const IdentificationOptions& options, const Progress& progress = {});
 
 }  // namespace softland

@@ -43,7 +43,7 @@ struct Weights {
   std::vector<double> values;
   double effective = 0;  ///< effective number of points: (sum of weights)^2 divided by the sum of squared weights
 };
-/// Returns weights in proportion to exp(power * logarithm), one for each of `logarithms`. A power below 1 makes them more even.
+/// Returns weights in proportion to exp(power * logarithm), one for each of `logarithms`; more even if `power` is below 1.
 [[nodiscard]] Weights weights_of(std::span<const double> logarithms, double power = 1);
 
 /// Returns mean and covariance of weighted points z.

@@ -13,7 +13,7 @@ namespace softland {
 class TraceWindows {
  public:
   /// `touches` are the times of first contact of the nominal design, for each measurement [s]. All rows of a measurement are
-  /// used from the beginning if this time is not within their times, or if the measurement sets its own end (`until`).
+  /// used from the beginning if they do not include this time, or if the measurement sets its own end (`until`).
   TraceWindows(const Bench& bench, const std::vector<double>& touches);
 
   /// Returns the measurements with the rows of traces (recorded curves) that the fit uses at present.

@@ -233,7 +233,7 @@ Tuner::State::Knowledge Tuner::State::updated(Knowledge known, const ContactReco
     known.next.number += 1;
     return known;
   }
-  // Drop contact records from before a drift of the device.
+  // A repeated shot that bounces or stays open shows a drift of the device: drop the contact records from before the drift.
   if (known.controller) known.forgotten = known.fired.size() - std::min(known.fired.size(), last_ones);
   known.controller.reset();
   propose_next(known, progress);
@@ -275,8 +275,8 @@ void Tuner::State::propose_next(Knowledge& known, const Progress& progress) cons
   if (known.in_a_row >= 2 && proposal.cost.landing < calm) repeat(known, forecast);
 }
 
-// Updates the best shot so far: the shot of least expected cost among those whose waveform did not bounce when last applied. It
-// is the next shot if that is expected to cost clearly less.
+// Updates the best shot so far: the shot of least expected cost among those whose waveform did not bounce when last applied.
+// The next shot becomes the best one if its expected cost is lower by at least `clearly`.
 void Tuner::State::keep_best(Knowledge& known, const OutcomeForecast& forecast, double expected) const {
   constexpr double clearly = 0.15;
   known.kept = known.next;

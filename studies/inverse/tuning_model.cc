@@ -445,7 +445,7 @@ TuningModel::Units TuningModel::units(const Eigen::VectorXd& z) const {
 }
 
 double TuningModel::safe_level(const NormalBelief& belief) const {
-  // 0.999 quantile of the standard normal distribution, for a level below which one in a thousand collapses.
+  // 0.999 quantile of the standard normal distribution: one in a thousand devices collapses onto the electrode below the level.
   constexpr double one_in_a_thousand = 3.0902;
   const NormalBelief own = in_spread(belief);
   const double deviation = std::sqrt(std::max(0.0, pulled_through_slope_.dot(own.covariance * pulled_through_slope_)));

@@ -169,9 +169,9 @@ class TuningModel {
   /// Returns the time for which a closing with contact is simulated after the last breakpoint of the waveforms [s].
   [[nodiscard]] double hold_time() const;
 
-  /// Units of a device at z relative to those of the nominal device, to first order in the logarithm. The unit of the commanded
-  /// voltages is the static pull-in voltage of the closing electrode divided by the gain of its source. The unit of time is the
-  /// period of the first mode.
+  /// Units of a device at z relative to those of the nominal device; their logarithms are linear in z, to first order. The unit
+  /// of the commanded voltages is the static pull-in voltage of the closing electrode divided by the gain of its source. The
+  /// unit of time is the period of the first mode.
   struct Units {
     double volts = 1, time = 1;
   };
@@ -209,7 +209,7 @@ class TuningModel {
   std::optional<std::size_t> electrode_;  // index of the electrode that closes the switch in Switch::drives()
   Eigen::VectorXd volts_slope_, time_slope_, pulled_through_slope_;
   std::optional<NormalBelief> prior_;
-  Eigen::MatrixXd prior_factor_;  // factor L of the covariance L L^T of the prior of z
+  Eigen::MatrixXd prior_factor_;  // factor L of the prior's covariance L L^T in the coordinates of [spread]
   // Collapse voltage of the nominal device under its closing electrode [V].
   double pulled_through_ = std::numeric_limits<double>::infinity();
 };

@@ -42,7 +42,7 @@ LinearMeasurement measurement_of(const TunedBelief& tuned) {
                         .values = VectorXd(static_cast<Index>(measured.size()))};
   for (Index i = 0; i < all.values.size(); ++i) {
     const Index k = measured[static_cast<std::size_t>(i)];
-    // Precision (inverse variance) that the records alone give: that of the prior, 1 in these units, is subtracted.
+    // Precision (inverse variance) from the records alone: the precision of the prior, 1 in these units, is subtracted.
     const double variance = eigen.values[k], precision = 1 / variance - 1;
     const VectorXd direction = eigen.vectors.col(k);
     all.rows.row(i) = std::sqrt(precision) * direction.transpose() * inverse;
@@ -62,7 +62,7 @@ WaferBelief believed_of_wafer(std::span<const TunedBelief> tuned, Index size) {
     all.push_back(measurement_of(one));
     count += all.back().values.size();
   }
-  // J (directions in z) of all measurements; `own` has J J^T of each device.
+  // J (directions in z) of the measurements on all devices. `own` has a diagonal block J J^T for each device.
   MatrixXd rows(count, size), own = MatrixXd::Zero(count, count);
   VectorXd values(count);
   Index begin = 0;
