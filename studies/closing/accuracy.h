@@ -91,8 +91,8 @@ struct AccuracyStudy {
   /// Ranges of the figures in studied_figures over runs with imperceptibly perturbed drives.
   std::array<Spread, studied_figures.size()> cloud;
   Spread permanent_contact_time, bounce_count;  ///< ranges of the two named figures over the same perturbed runs as `cloud`
-  std::array<bool, studied_figures.size()> conditioned;  ///< true for each of studied_figures that is well-conditioned, so
-                                                         ///< that its error is meaningful
+  /// True for each of studied_figures that is well-conditioned, so that its error is meaningful.
+  std::array<bool, studied_figures.size()> conditioned;
   std::vector<Recommendation> recommendations;
 
   /// Returns the largest error of the well-conditioned figures in a row of the study; NaN if the row lacks one of these

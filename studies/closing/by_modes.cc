@@ -36,8 +36,8 @@ double extrapolated(const std::map<int, double>& values) {
 // Rounds to ten digits: with many modes further digits are rounding errors, which depend on how a program is linked.
 double to_ten_digits(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.9e}", value)) : value; }
 
-// Computes the value find(switch) for each switch of `ladder`, which are the scene's switch with rising numbers of modes. If
-// the last value still changes by more than `much`, computes the value with the most modes as well.
+// Computes the value find(switch) for each switch of `ladder` (the scene's switch with rising numbers of modes). If the last
+// value still changes by more than `much`, computes the value with the most modes as well.
 template <class Find>
 ByModes value_by_modes(const ModeLadder& ladder, Find&& find) {
   // Relative change of the last value above which the value is also computed with the most modes.

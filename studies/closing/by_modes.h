@@ -59,8 +59,8 @@ class ModeLadder {
   mutable std::optional<Switch> finest_;
 };
 
-/// Returns the closed equilibrium under constant voltages for every switch of the ladder, the scene's own switch first; none
-/// where it does not exist. Each search starts from the equilibrium with fewer modes.
+/// Returns the closed equilibrium under constant voltages for every switch of `ladder` (in rising number of modes); none where
+/// it does not exist. Each search starts from the equilibrium with fewer modes.
 [[nodiscard]] std::vector<std::optional<ClosedEquilibrium>> closed_equilibria(const ModeLadder& ladder,
                                                                               std::span<const double> volts);
 

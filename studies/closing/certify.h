@@ -25,8 +25,9 @@ struct GrazingRebound {
   double time = 0;             ///< time at which the rebound begins [s]
   double height = 0;           ///< height of the rebound in the unperturbed run [m]
   double impact_velocity = 0;  ///< impact velocity of the touch before the rebound [m/s]
-  bool at_threshold = false;   ///< true if the rebound is significant in some runs only; false if the touch before the rebound
-                               ///< has the smallest impact velocity so far
+  /// True if the rebound is significant in some runs only; false if the touch before the rebound has the smallest impact
+  /// velocity so far.
+  bool at_threshold = false;
 };
 
 struct IllConditioned {

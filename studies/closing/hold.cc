@@ -43,7 +43,7 @@ Hold hold_of_connection(const Switch& model, const std::vector<double>& levels, 
   const bool needs_all = model.device().connection == Connection::all;
   std::optional<Eigen::VectorXd> rest;
   if (keeps_closed(model, hold.closed)) rest = hold.closed->q;
-  // If any contact makes the connection: search an equilibrium of the closed switch on a contact other than the first.
+  // If any contact makes the connection, search an equilibrium on each other contact: `hold.closed` is that on the first one.
   for (std::size_t c = 1; c < model.contacts() && !rest && !needs_all; ++c) {
     if (!model.device().contacts[c].connects) continue;
     const Switch other(with_first_contact(model.device(), c));

@@ -36,8 +36,8 @@ struct Hold {
   double resistance = Metrics::unset;
   /// Resistance of each of several contacts [Ohm]; empty if the hold levels do not keep the switch closed.
   std::vector<double> resistances = {};
-  /// True if the hold levels keep the switch closed; false if the closed equilibrium of a switch with a contact is unstable. A
-  /// switch without a closed equilibrium can stay closed only by adhesion.
+  /// True if the hold levels keep the switch closed: its closed equilibrium is stable or, without a closed equilibrium,
+  /// adhesion may keep it closed. Also true for a switch without a contact.
   bool is_held = true;
   /// Returns the contact force above which a contact counts as steady [N]; NaN if the hold levels do not keep the switch
   /// closed.

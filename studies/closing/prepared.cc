@@ -144,7 +144,7 @@ std::string before_state_path(const PreparedScene& scene) {
   return fmt::format("waveform.{}.before_state", named != nullptr ? named->name : "NAME");
 }
 
-// Returns the loosest tolerance of the integrator that delivers a relative accuracy of figures on random scenes
+// Returns the loosest tolerance of the integrator with which the figures of random scenes have the relative `accuracy`
 // (results/accuracy.md).
 double tolerance_for(double accuracy, bool stiff) { return std::clamp(accuracy / 10, 1e-12, stiff ? 1e-4 : 1e-3); }
 

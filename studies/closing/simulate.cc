@@ -96,8 +96,8 @@ void forget_what_is_chaotic(FigureValues& errors, const EvaluatedRun& best, cons
     if (figure.conditioning != Conditioning::every_touch) continue;
     if (errors[figure] > visible * std::abs(figure.value(best.metrics))) errors[figure] = Metrics::unset;
   }
-  // Runs may also diverge in insignificant rebounds. The energy of the impacts after that time bounds the difference of the
-  // runs in impact energy.
+  // Runs may also diverge in insignificant rebounds. From then on their impact energies differ at most by the energy of the
+  // later impacts.
   for (const EvaluatedRun* run : {&best, &other}) {
     double& energy = errors[&Metrics::impact_energy];
     energy = std::max(energy, energy_after(run->trajectory.touches, parting_time(best, other, 0)));
@@ -290,7 +290,7 @@ JudgedRun with_judge(EvaluatedRun own, ClosingRuns& runs, const PreparedScene& p
     own = std::move(judge);
     judge = std::move(next);
   }
-  constexpr double enough = 0.2;  // ratio of two runs' tolerances above which their difference shows no integration error
+  constexpr double enough = 0.2;  // runs whose tolerances are closer than this ratio show no integration error
   if (judge_is_tighter() && e > accuracy && may_tighten) std::swap(own, judge);
   const double ratio = judge.tolerance / own.tolerance;
   // Only the quadrature of the two runs differs: take the finer run, and judge it by a run with a looser tolerance.

@@ -54,7 +54,7 @@ struct FigureRange {
 struct FigureChaos {
   std::string_view key;        ///< key of the figure, one of device_figures
   std::size_t fitted = 0;      ///< number of devices to which the polynomials of the figure are fitted
-  std::size_t unseen = 0;      ///< number of other devices on which the polynomials are tested
+  std::size_t unseen = 0;      ///< number of devices outside of the fit, on which the polynomials are tested
   int degree = 0;              ///< degree of the polynomials in the varied quantities
   std::size_t terms = 0;       ///< number of terms of the polynomials, the constant included
   double q2 = Metrics::unset;  ///< share of the figure's variance that the polynomials predict, by cross-validation
@@ -65,13 +65,13 @@ struct FigureChaos {
 };
 
 struct BoxAndChaosOptions {
-  std::size_t closings_per_search = 300;  ///< closings that each search for an end of a figure's range may simulate
+  std::size_t closings_per_search = 300;  ///< largest number of closings in a search for an end of a figure's range
   std::size_t most_fitted = 256;          ///< largest number of devices to which polynomials are fitted
 };
 
 struct BoxAndChaos {
   double half_width = Metrics::unset;  ///< half width b of the box of varied quantities, in standard deviations
-  std::size_t sampled_inside = 0;      ///< number of sampled devices in the box of varied quantities
+  std::size_t sampled_inside = 0;      ///< number of sampled devices with their varied quantities in the box
   long closings = 0;                   ///< number of simulated closings in the searches for the ends of the ranges
   std::vector<FigureRange> ranges = {};
   std::vector<FigureChaos> chaos = {};

@@ -39,7 +39,7 @@ struct Cycles {
   std::vector<Touch> touches = {};  ///< touches of the contact in the run; only if requested
 };
 
-/// Differences from the first cycle of a run at which a cycle still counts as alike.
+/// Largest differences from the first cycle of a run with which a later cycle still counts as equal to the first one.
 struct CycleTolerances {
   double share = 0.05;    ///< relative difference of the largest impact velocity and of the highest rebound
   double rebound = 1e-9;  ///< absolute difference of the highest rebound that is always permitted [m]

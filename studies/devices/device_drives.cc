@@ -28,7 +28,7 @@ Waveform as_table(const Signal& signal, double window) {
   return table;
 }
 
-// Returns the member of `errors` for this error of a voltage source; null for jitter, which is not a single number.
+// Returns the member of `errors` that holds the kind `error`; null for jitter, which is not a single number.
 double* member_of(SourceErrors& errors, DriveError error) {
   switch (error) {
     case DriveError::gain:
@@ -62,11 +62,11 @@ struct DeviceDrives::Driven {
   std::vector<Waveform> waveforms;
   std::vector<Signal> signals;  // commanded voltages of the drives
   std::vector<SourceErrors> errors;
-  // Beginning of the device's time axis in time of the waveforms [s]: 0, or the first edge that errors move before 0.
+  // Time of the waveforms at which the device's time axis begins [s]: 0, or the first edge that errors move before 0.
   double origin = 0;
 
-  // Returns the commanded signal of drive k with jitter, and its beginning in time of the waveform [s]: 0, or the first edge if
-  // jitter moves this edge before 0.
+  // Returns the commanded signal of drive k with jitter, and the time of the waveform at which the signal begins [s]: 0, or the
+  // first edge if jitter moves this edge before 0.
   [[nodiscard]] std::pair<Signal, double> jittered(std::size_t k) const {
     const SourceErrors jitter{.edges = errors[k].edges};
     const double begin = std::min(0.0, first_edge(signals[k], jitter));
@@ -185,7 +185,7 @@ std::optional<std::vector<double>> DeviceDrives::gains(const DeviceUnits& units,
   for (std::size_t k = 0; k < sources_.size(); ++k) {
     const SourceErrors own = errors(k, values);
     all.push_back(own.gain);
-    // A delay below 0 shifts the time axis of all drives, so that signals differ by more than a factor.
+    // A delay below 0 shifts the time axis of all drives: the signals differ from those without errors by more than a factor.
     if (own.delay < 0) return std::nullopt;
     if (sources_[k].empty() && own.gain == 1) continue;
     const bool is_gain = std::ranges::all_of(sources_[k], [](const Source& one) { return one.error == DriveError::gain; });

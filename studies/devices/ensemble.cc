@@ -311,7 +311,7 @@ std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, cons
   };
   const std::size_t chunks = (ensemble.size() + chunk - 1) / chunk;
   std::size_t complete = std::min<std::size_t>(ensemble.size(), chunk * run_tasks(chunks, run.jobs, task, progress.stop));
-  // After an interruption, some tasks contain devices whose closing has not begun or has not ended.
+  // After an interruption some closings are missing or incomplete: return the devices before the first such closing.
   const auto missing = [](const DeviceOutcome& o) {
     return o.failure.empty() && (o.metrics.status == Status::not_run || o.metrics.status == Status::interrupted);
   };

@@ -28,7 +28,7 @@ namespace softland {
 
 /// A device of an ensemble, with its varied quantities and its model.
 struct SampledDevice {
-  std::vector<double> values;   ///< values of the varied quantities, in the order of [spread], as DeviceSpread::to_values
+  std::vector<double> values;   ///< values of the varied quantities, in the order of [spread], from DeviceSpread::to_values
   std::optional<Switch> model;  ///< model of the device; none if its values are impossible
   std::string refusal;          ///< rule that the values violate if the device is impossible
 };

@@ -328,7 +328,7 @@ void require_derived(const Derivatives::Variable& variable) {
 
 }  // namespace
 
-// The scene that a row of the input describes, in volts, with the data that its derivatives by the columns need.
+// The scene that a row of the input describes, in volts, with the data for derivatives of its figures by the input columns.
 struct Evaluator::Place {
   PreparedScene scene;                 ///< scene whose [spread] has the input columns that vary the device
   std::vector<std::size_t> of_device;  ///< index of the input column for each varied quantity of the [spread] of `scene`
@@ -379,7 +379,7 @@ Evaluator::Place Evaluator::place_of(std::span<const double> row, const Progress
   return with_columns(std::move(there), keys_of_row(in_volts, row), std::move(known));
 }
 
-// Returns the input columns that are parameters of waveforms, with the factors that convert from the units of these columns.
+// Returns the input columns that are parameters of waveforms, with the factors from their units to those of the parameters.
 std::vector<Evaluator::WaveformKey> Evaluator::keys_of_row(const PreparedScene& in_volts, std::span<const double> row) const {
   std::vector<WaveformKey> all;
   std::vector<Waveform> waveforms = in_volts.waveforms();

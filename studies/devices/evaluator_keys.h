@@ -1,4 +1,4 @@
-// Keys of the columns of an evaluator: parameters of waveforms and quantities of the device, as the scene has them.
+// Keys of the input columns of an evaluator: parameters of the waveforms and quantities of the device in a scene.
 #pragma once
 
 #include <cstddef>

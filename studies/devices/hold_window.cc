@@ -20,7 +20,7 @@ bool is_held(const ClosedRange& device, double level) { return device.release <=
 // voltage.
 struct Nominal {
   double level = std::numeric_limits<double>::quiet_NaN();  // level of the electrode [V]
-  std::optional<ClosedEquilibrium> closed;                  // closed equilibrium of the nominal device at this level
+  std::optional<ClosedEquilibrium> closed;                  // closed equilibrium of the nominal device at `level`
 };
 
 Nominal nominal_of(const Switch& model, std::size_t electrode, std::vector<double> volts) {

@@ -49,7 +49,8 @@ bool NearbyDevices::changes_switch(std::size_t i) const {
   return std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return !key.drive; });
 }
 
-// Returns the two devices one step beside the current device. Throws InvalidInput if the values of one of them are impossible.
+// Returns the devices one step above and below the current device in varied quantity i. Throws InvalidInput if the values of
+// one of them are impossible.
 SwitchSlopes::Neighbours NearbyDevices::neighbours(std::size_t i) {
   Switch above = device_beside(i, 1), below = device_beside(i, -1);
   SwitchOptions finer = nominal_.quadrature;

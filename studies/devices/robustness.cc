@@ -198,7 +198,7 @@ Robustness robustness(const PreparedScene& nominal, const std::vector<NamedDrive
   NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, driven)};
   plain.waveforms.merge(nominal.drives.waveforms());  // add the waveforms of drives that the plain step does not name
   std::vector<NamedDrive> all;
-  // True if `drive` and a set in `all` have the same signals, without calibration.
+  // True if a set of waveforms in `all` has the same signals as `drive`, and neither has a calibration.
   const auto is_judged = [&](const NamedDrive& drive) {
     const std::vector<Signal> own = nominal.commanded(waveforms_of(nominal, drive));
     return drive.calibration.is_empty() && std::any_of(all.begin(), all.end(), [&](const NamedDrive& other) {

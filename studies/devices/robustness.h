@@ -68,7 +68,7 @@ struct RobustnessOptions {
   /// measurement, with each measurement alone, and with all measurements without error. The last is simulated with the devices
   /// sorted into classes, and with each device's own scale factors.
   bool worth_of_measuring = false;
-  bool opens_on_command = false;  ///< true if the waveforms may command devices to open, EnsembleRun::opens_on_command
+  bool opens_on_command = false;  ///< true if the waveforms may command devices to open: EnsembleRun::opens_on_command
 };
 
 struct Robustness {

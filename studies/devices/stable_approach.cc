@@ -14,7 +14,8 @@
 namespace softland {
 namespace {
 
-// Levels, before contact, of the electrode that holds the closed switch, as shares of its hold level, in increasing order.
+// Levels before contact that the search tries, in this order, for the electrode that holds the closed switch, as shares of its
+// hold level.
 constexpr std::array low_levels{0.0, 0.12, 0.24, 0.36};
 // The search for a stable approach ends if the voltage at which the switch touches its contact is this far from the limit of
 // the voltage source [standard deviations of the voltage over devices].

@@ -27,8 +27,8 @@ struct StableApproach {
   double slope = 0;      ///< derivative of the contact point's deflection by the voltage of `drive` on the nominal design [m/V]
   double limit = 0;      ///< limit of the voltage source in the direction of `reaches` [V]
 
-  /// Returns the width of the range of positions, from the 5th to the 95th percentile, at which 90 % of the devices touch, to
-  /// first order [m]. Positions are those of the nominal design at the touching voltages of the devices.
+  /// Returns the range of voltages at which the devices touch, from the 5th to the 95th percentile, as a range of positions of
+  /// the nominal design's contact point, to first order [m].
   [[nodiscard]] double touch_places() const;
 };
 

@@ -391,7 +391,7 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Progress& progress
     const ElectrodePullIn found = known != p.pull_in.end() ? known->second : electrode_pull_in(p.model, k, bias, progress);
     const Status status = found.statically.status == Status::done ? found.dynamically.status : found.statically.status;
     if (status != Status::done) row.status = to_string(status);
-    // The drive of a dispersion force is its factor less one; the row has the factor.
+    // The drive value of a dispersion force is the factor on the force less one; the row has the factor.
     const double offset = is_electrode ? 0 : 1;
     row.figures.push_back(finite(offset + found.statically.voltage));
     row.figures.push_back(finite(offset + found.dynamically.voltage));

@@ -73,7 +73,7 @@ struct PointRow {
 };
 
 /// Checks the study of a request and its options, and adds the options that are not given, so that the plan (stored request)
-/// does not depend on defaults. Throws InvalidInput; the message begins with the place of the entry.
+/// does not depend on defaults. Throws InvalidInput; the message begins with the place of the invalid entry.
 void complete(PlanRequest& request, const OtherStudies& others = {});
 
 class Exploration {
@@ -89,7 +89,8 @@ class Exploration {
   /// Returns a text that contains everything on which the row of a scene depends: equal texts have equal rows, which are
   /// computed once.
   [[nodiscard]] std::string content(const SceneFile& scene) const;
-  /// Returns the drive waveforms of a scene of the plan as the ends of straight lines [s, V]; none for an impossible scene.
+  /// Returns the drive waveforms of a scene of the exploration as the ends of straight lines [s, V]; none for an impossible
+  /// scene.
   [[nodiscard]] std::map<std::string, std::vector<std::pair<double, double>>> waveforms(const SceneFile& scene,
                                                                                         const Progress& progress = {});
   /// Returns the row (status and figures) of a scene of the plan. May be called on any thread; the number `jobs` of threads for
@@ -110,7 +111,7 @@ class Exploration {
   std::optional<PointStudy> study_;  // study that the exploration runs at every point; none for a registered study (`other_`)
   std::optional<OtherStudy> other_;
   std::vector<PointFigure> figures_;
-  AskedFigures asked_ = {};              // figures that the scene of the exploration requests
+  AskedFigures asked_ = {};              // optional figures of merit that the scene of the exploration requests
   std::vector<std::string> parameters_;  // names of the waveform parameters that a search at a point varies
   bool shares_switches_ = false;         // true to remember pull-in voltages, since several points may have the same switch
   PullInMemory pull_in_;

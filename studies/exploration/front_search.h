@@ -35,7 +35,7 @@ struct FrontOptions {
   std::function<void(const FrontFound&)> on_point = nullptr;  ///< function that is called under a lock after every point
 };
 
-/// Searches the Pareto front of an exploration whose plan (stored request) asks for this search. Point k is the k-th point that
+/// Searches the Pareto front of an exploration whose plan (stored request) requests this search. Point k is the k-th point that
 /// the search requests. A point in `known`, or of an earlier plan in `store`, is not computed again: a repeated search after an
 /// interruption ends with the same rows. Throws the exceptions of StudyStore::add().
 [[nodiscard]] FrontFound search_front(Exploration& exploration, StudyStore& store, KnownRows known,

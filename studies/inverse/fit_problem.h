@@ -42,7 +42,7 @@ struct FitProblem {
   std::vector<FitParameter> parameters;
   std::vector<std::vector<std::size_t>> of_device;  ///< indices of the unknowns by device and variable of [spread]
   Eigen::MatrixXd prior;                            ///< P, the Fisher information of the prior on the scaled unknowns z
-  Eigen::MatrixXd prior_root;                       ///< square root of P: the residuals of the prior are prior_root z
+  Eigen::MatrixXd prior_root;  ///< square root of the matrix `prior`: the residuals of the prior are prior_root z
   Loss loss = Loss::huber;
 
   /// Returns the residuals of these predicted values: prediction less measured value, in standard deviations of the data.
@@ -57,7 +57,7 @@ inline constexpr double scale_without_prior = 0.1;
 /// Returns the problem of a fit without measured values. Throws the exceptions of fit().
 [[nodiscard]] FitProblem problem_without_data(const SceneFile& file, const Bench& bench, const FitOptions& options,
                                               const Progress& progress);
-/// Returns the problem of a fit with the data of the measurements in `bench`, in place of its former data.
+/// Returns the problem of a fit with its data replaced by those of the measurements in `bench`.
 [[nodiscard]] FitProblem with_data(FitProblem problem, const Bench& bench);
 
 }  // namespace softland

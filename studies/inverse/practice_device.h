@@ -32,7 +32,7 @@ namespace softland {
 struct PracticeModel {
   int more_modes = 0;    ///< number of modes in addition to those of the scene
   std::string gas = {};  ///< law of the gas film in the device, in place of the scene's law; empty for the scene's own law
-  double stiffness = 1;  ///< factor by which the contact's stiffness or modulus differs from the scene
+  double stiffness = 1;  ///< ratio of the contact's stiffness or modulus to that in the scene
   /// Further keys of the scene that differ in the device, with their values: "gap.contact=2.05 um".
   std::vector<std::string> set = {};
 };

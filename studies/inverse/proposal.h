@@ -68,7 +68,8 @@ class TuningSpace {
   DriveWaveforms others_;
   std::vector<std::vector<double>> starts_;
   std::vector<Variable> variables_;
-  // True for waveform variables that hardly affect the closing, and for those that scale with an electrode's voltage unit.
+  // `coarse_` marks the waveform variables that hardly affect the closing, `of_electrode_` those that scale with the voltage
+  // unit of an electrode.
   std::vector<bool> coarse_, of_electrode_;
   double highest_ = std::numeric_limits<double>::infinity();
 };

@@ -114,7 +114,7 @@ struct Tuner::State {
     int next_waveform = 0;          // number of the first shot with the waveform of the next shot; 0 for a new waveform
     std::vector<double> surprises;  // errors of predicted first contact times by closing, in standard deviations
     int unexpected_bounces = 0;     // number of closings that bounced although hardly any device of the belief did
-    int unexplained_bounces = 0;    // number of long bounces in the used records that the best device of the belief does not have
+    int unexplained_bounces = 0;    // number of used records with a long bounce that the belief's best device does not show
     // Last ratio of contact to electrode gap estimated from enough devices; none if the scene's ratio explains the records.
     std::optional<BelievedQuantity> gap_ratio = {};
     TouchMisfit misfit = {};  // misfit of the contact records that were used last
@@ -185,7 +185,7 @@ bool has_long_bounce(const TuningModel& scene, const ContactRecord& record) {
   return std::ranges::any_of(openings(record), [&](const ContactOpening& one) { return one.end - one.begin >= least; });
 }
 
-// Returns the number of contact records with a long bounce that the best device of the belief does not have.
+// Returns the number of contact records with a long bounce that the simulated best device of the belief does not show.
 int unexplained_bounces(const TuningModel& scene, std::span<const LearnedShot> shots, const Belief& belief,
                         const Progress& progress) {
   const std::vector<Eigen::VectorXd> best{belief.mode};
@@ -400,8 +400,8 @@ BeliefSummary Tuner::belief() const {
 
 namespace {
 
-// Describes a gap ratio that differs from the scene's: "The device does not match the model: its contact gap is 4.8 % wider
-// ...". All devices of [spread] have one gap ratio.
+// Describes a ratio of contact to electrode gap that differs from the scene's: "The device does not match the model: its
+// contact gap is 4.8 % wider ...". All devices of [spread] have the scene's ratio.
 std::string gap_ratio_prose(const BelievedQuantity& ratio) {
   constexpr double percent = 100;
   const double change = percent * (ratio.mean - 1);

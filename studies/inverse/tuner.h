@@ -63,10 +63,10 @@ static_assert(is_complete<approaches>());
 /// A waveform from which searches of a tuning start, optimised once for a scene.
 struct CandidateWaveform {
   Approach approach = Approach::fast;
-  std::vector<double> x;       ///< parameters of the candidate's waveform: the variables of TuningSpace
-  double volts = 1, time = 1;  ///< factors of voltage and time of the devices for which the waveform was optimised, relative to
-                               ///< the nominal device
-  double cost = 0;             ///< expected cost of closings over the devices for which the waveform was optimised
+  std::vector<double> x;  ///< parameters of the candidate's waveform: the variables of TuningSpace
+  /// Factors of voltage and time, relative to the nominal device, of the devices for which the waveform was optimised.
+  double volts = 1, time = 1;
+  double cost = 0;  ///< expected cost of closings over the devices for which the waveform was optimised
 };
 
 struct TunerOptions {
@@ -77,7 +77,7 @@ struct TunerOptions {
   /// Number of candidate waveforms (recipes) to search, each for devices with another unit of voltage, 1 to 5.
   int most_recipes = 1;
   double effort = 1;  ///< factor on the usual number of evaluations of every search in the tuning
-  /// Limit of the first contact time of the tuned waveform: before or by a time; none for no limit.
+  /// Limit of the first contact time of the tuned waveform (before a time, or by a time at the latest); none for no limit.
   std::optional<Condition> touch = {};
   /// Beliefs about (estimates of) devices of the same wafer that were tuned before. They determine the prior of the device to
   /// tune.
@@ -125,8 +125,8 @@ struct BelievedQuantity {
 
 /// The misfit of the recorded first contact times to the devices of [spread].
 struct TouchMisfit {
-  double least = 0;         ///< least |z|^2 + sum of r^2 over the records (belief.h): the value of the device z that fits the
-                            ///< records best
+  /// Least |z|^2 + sum of r^2 over the records (belief.h): the value of the device z that fits the records best.
+  double least = 0;
   double bound = 0;         ///< value that |z|^2 + sum of r^2 exceeds for one in a thousand devices of [spread]
   std::size_t records = 0;  ///< number of contact records in the misfit
   [[nodiscard]] bool is_beyond() const { return least > bound; }
@@ -185,7 +185,7 @@ class Tuner {
   /// Returns the best shot so far, with its prediction. This is a shot whose waveform did not bounce when last applied, unless
   /// the next waveform is expected to be clearly better. While a shot is repeated, returns the last shot that did not bounce.
   [[nodiscard]] const TunerShot& kept() const;
-  /// True if the last closing had the waveform of the shot kept().
+  /// True if the last closing had the waveform of the best shot so far, kept().
   [[nodiscard]] bool was_kept_last() const;
   /// Proposes the waveform of kept() again if it was applied before: a waveform that closed without a bounce some closings ago
   /// may bounce after a drift of the sources.

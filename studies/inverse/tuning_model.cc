@@ -154,7 +154,7 @@ class SingleClosing final : public ClosingObserver {
     return own;
   }
   ReboundFinder finder_;
-  double speed_per_rate_;  // ratio of the impact velocity to the rate of the capacitance [m/F]
+  double speed_per_rate_;  // ratio of the impact velocity to the time derivative of the capacitance [m/F]
   std::optional<CapacitanceEdges> edges_;
 };
 

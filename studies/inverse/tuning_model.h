@@ -95,7 +95,7 @@ struct PredictedClosing {
   [[nodiscard]] double stays_from() const { return openings.empty() ? touch : std::max(touch, openings.back().end); }
 };
 
-/// A device of the belief in a shot, with one waveform for every drive.
+/// A shot (closing) to simulate: a device of the belief, and one waveform for every drive.
 struct PredictedShot {
   const Particle* device = nullptr;
   const std::vector<Waveform>* waveforms = nullptr;
