@@ -20,8 +20,9 @@ namespace softland {
 namespace {
 
 constexpr int functions = element_functions;
-constexpr int shortest_count = 6;     // least number of elements over the length of a beam
-constexpr double least_pivot = 2e-3;  // least pivot in the elimination of the receptance: small pivots magnify rounding
+constexpr int shortest_count = 6;  // least number of elements into which a beam is divided
+// Smallest pivot at which a receptance is accurate enough: smaller pivots magnify rounding errors, and the full search follows.
+constexpr double least_pivot = 2e-3;
 
 // Returns combinations of the shape functions that the supports of the beam permit, orthonormal in the elastic energy. The
 // shape functions have the values and slopes `end` at the far end, and `slopes` has the integrals of products of their slopes.
@@ -38,25 +39,27 @@ Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::Matrix
   return basis;
 }
 
-// Returns the bending energy that the linear part of a rigidity 1 + xi, xi in [-1, 1], adds between the shape functions m and
-// m + 1 of an element: the integral of xi times two neighbours of the normalised Legendre polynomials.
+// Returns the coupling of the shape functions m and m + 1 in the bending energy of an element whose rigidity is 1 + xi, xi in
+// [-1, 1]. It is the integral of xi times the normalised Legendre polynomials of degrees m and m + 1.
 double taper_coupling(int m) { return (m + 1) / std::sqrt((2 * m + 1.0) * (2 * m + 3.0)); }
 
-// The phase of a mode over the beam, as if the mode were a travelling bending wave, and the growth of the phase with omega^2.
-// Similar beams have nearly the same phases.
+// The phase that a travelling bending wave with the frequency of a mode gains over the beam, and its derivative by omega^2.
+// Modes of similar beams have nearly the same phase, so that the phase predicts the frequency of a mode of a changed beam.
 struct WavePhase {
   double value = 0, slope = 0;
   WavePhase(const NormalisedModes::Beam& beam, double square) {
     for (const NormalisedModes::Beam::Section& s : beam.sections) {
       const double n = beam.axial_force / (2 * s.rigidity), root = std::sqrt(n * n + s.mass * square / s.rigidity);
-      const double number = std::sqrt(root - n);  // wave number k: EI k^4 + N k^2 = mu omega^2; n is N / (2 EI)
+      // Wave number k with EI k^4 + N k^2 = mu omega^2, where N is the tension and n = N / (2 EI).
+      const double number = std::sqrt(root - n);
       value += (s.end - s.begin) * number;
       slope += (s.end - s.begin) * s.mass / (4 * s.rigidity * root * number);
     }
   }
 };
 
-// Estimates omega^2 of a mode from that of a similar beam, which has nearly the same wave phase.
+// Estimates omega^2 of a mode of the beam `to` from `square`, omega^2 of the mode of the same number of the similar beam
+// `from`: both modes have nearly the same wave phase.
 double carried_over(double square, const NormalisedModes::Beam& from, const NormalisedModes::Beam& to) {
   constexpr int steps = 3;
   const double phase = WavePhase(from, square).value;
@@ -68,11 +71,11 @@ double carried_over(double square, const NormalisedModes::Beam& from, const Norm
 }
 
 // Finds four poles of the receptance at `place` (squared frequencies of four modes) at once by Newton's method, from the
-// estimates in `squares`; a relative change of `rounding` counts as converged. Returns none without convergence, and when
-// rounding errors may be large: at a small pivot, or when a mode hardly moves at `place`.
+// estimates in `squares`, up to a relative change of `rounding`. Returns none without convergence, and when rounding errors may
+// be large: at a small pivot, or when a mode hardly moves at `place`.
 std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double place, const Lane& rounding, Lane& squares) {
   constexpr int most_steps = 10;
-  constexpr double least_motion = 1e-3;  // least deflection at `place` of a mode whose mean square over the beam is 1
+  constexpr double least_motion = 1e-3;  // least deflection at `place`, for modes of mean square 1 over the beam
   for (int i = 0; i < most_steps; ++i) {
     const Receptance::Answer at = receptance.at(squares, place);
     const Lane step = at.deflection / at.inertia;
@@ -100,8 +103,9 @@ double general_pinned_inverse_square(const Eigen::RowVectorXd& deflections, cons
   return 1 / high;
 }
 
-// Returns true when the modes of the beam `known` serve for `beam`. Beams on springs or with linear sections may differ by
-// rounding, as when all sections become thicker by one factor: their modes would take a full search again.
+// Returns true when the modes of the beam `known` are also those of `beam`: the beams are equal. Beams on springs or with
+// linear sections may also differ by rounding, as when one factor scales all thicknesses, because the search for their modes
+// cannot start from those of a similar beam.
 bool is_known(const NormalisedModes::Beam& beam, const NormalisedModes::Beam& known) {
   if (beam == known) return true;
   if (!beam.is_general() || !known.is_general() || beam.modes != known.modes || beam.far_clamp != known.far_clamp ||
@@ -167,7 +171,8 @@ NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_
   for (const Beam::Section& s : beam_.sections) {
     // Waves are shorter where the beam is thin; elements are shorter there when the wave length is below half of the largest.
     double shorter = std::max(1.0, std::sqrt(std::sqrt(s.mass / s.rigidity / lowest)) / 2);
-    if (s.taper != 0) shorter *= 1.5;  // more elements: a curvature over a linear rigidity is not a polynomial
+    // More elements: the curvature of a mode is moment over rigidity, which is not a polynomial for a linear rigidity.
+    if (s.taper != 0) shorter *= 1.5;
     const int parts = std::max(1, static_cast<int>(std::ceil((s.end - s.begin) * shorter * count - 1e-9)));
     for (int k = 0; k < parts; ++k) {
       // Rigidity in the middle of the element over that in the middle of the section.
@@ -185,7 +190,7 @@ NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_
 }
 
 void NormalisedModes::search() {
-  const GaussRule rule = gauss_rule(functions + 2);  // Gauss rule that is exact for squares of polynomials of degree 9
+  const GaussRule rule = gauss_rule(functions + 2);  // exact for products of two shape functions, which have the degree 9
   const auto points = static_cast<Eigen::Index>(rule.points.size()), total = shape(1, 0).size();
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(total, total), slopes = mass;
   for (const BeamElement& element : elements_) {
@@ -208,8 +213,8 @@ void NormalisedModes::search() {
   const Eigen::MatrixXd basis = is_general ? permitted_motions(end, slopes) : permitted(beam_, end, slopes);
   if (is_general || beam_.far_clamp || beam_.axial_force != 0) mass = basis.transpose() * mass * basis;
 
-  // Solve M x = x / omega^2 for the modes: the low modes, which are needed, have the largest and so the most accurate
-  // eigenvalues.
+  // Solve M x = x / omega^2, M being the mass matrix: the low modes, which are needed, have the largest and so the most
+  // accurate eigenvalues. The stiffness matrix is the unit matrix.
   const SymmetricEigen modes = symmetric_eigen(mass);
   inverse_squares_.resize(beam_.modes);
   shapes_.resize(total, beam_.modes);
@@ -233,8 +238,8 @@ bool NormalisedModes::Beam::is_general() const {
          std::any_of(sections.begin(), sections.end(), [](const Section& s) { return s.taper != 0; });
 }
 
-// A stiff spring at the far end would dominate the energy matrix and cost accuracy by rounding. So the motions that deflect the
-// spring are separated from those that leave the end at rest, beginning with the stiffer spring.
+// A stiff spring at the far end would dominate the stiffness matrix, and rounding would then make the modes inaccurate. So the
+// motions that deflect the spring are separated from those that leave the far end at rest, beginning with the stiffer spring.
 Eigen::MatrixXd NormalisedModes::permitted_motions(const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) const {
   const Eigen::Index total = slopes.rows();
   Eigen::MatrixXd energy = beam_.axial_force * slopes;
@@ -299,7 +304,8 @@ Eigen::MatrixXd NormalisedModes::slope_products() const {
 
 bool NormalisedModes::follow(const NormalisedModes& near) {
   const int modes = beam_.modes;
-  // Least length of the last element, as a share of the beam's length: a clamp on a shorter element costs accuracy by rounding.
+  // Least length of the last element, as a share of the beam's length, for a beam with a far clamp: in a shorter element the
+  // conditions of the clamp cause rounding errors.
   constexpr double least_end = 0.05;
   if (beam_.is_general() || near.beam_.is_general() || near.beam_.modes != modes || near.beam_.far_clamp != beam_.far_clamp ||
       near.beam_.sections.size() != beam_.sections.size() || (beam_.far_clamp && 2 * elements_.back().half() < least_end)) {
@@ -324,8 +330,9 @@ bool NormalisedModes::follow(const NormalisedModes& near) {
   }
   orient();
 
-  // Relative differences of squared frequencies in the check that the modes found are the lowest. Neighbouring modes must
-  // differ by `apart`. No mode may lie `margin` below the first, and no other mode up to `margin` above the last.
+  // Relative differences of squared frequencies in the check that the modes found are those of lowest frequency. Neighbouring
+  // modes must differ by `apart`. There must be no mode below the first one less `margin`, and no further mode below the last
+  // one plus `margin`.
   constexpr double apart = 1e-7, margin = 1e-8;
   for (int i = 1; i < modes; ++i) {
     if (!(inverse_squares_[i] * (1 + apart) < inverse_squares_[i - 1])) return false;
@@ -337,7 +344,8 @@ bool NormalisedModes::follow(const NormalisedModes& near) {
 }
 
 void NormalisedModes::orient() {
-  // Distance from the clamp, as a share of the length: far below the first zero of the first forty modes.
+  // Position at which modes between two clamps are made positive, as a share of the length: each of the first forty modes has
+  // its first zero much further from the clamp.
   constexpr double close_to_the_clamp = 1e-3;
   const bool is_held = beam_.far_clamp || beam_.far_rotation != 0 || beam_.far_translation != 0;
   const Eigen::RowVectorXd positive = shape(is_held ? close_to_the_clamp : 1, 0);
@@ -369,7 +377,7 @@ Eigen::RowVectorXd NormalisedModes::shape(const BeamElement& element, double xi,
     const double half = other.half();
     const bool inside = other.begin == element.begin;
     ElementRow local = (inside ? element_integrals(xi, derivative) : ends[derivative]) * (derivative == 0 ? half * half : half);
-    // Beyond the right end of its element a shape function continues as a straight line.
+    // A shape function has no curvature beyond the right end of its element, so it continues there as a straight line.
     if (!inside && derivative == 0) local += (x - other.end) * half * ends[1];
     row.segment<functions>(functions * static_cast<Eigen::Index>(e)) = local.array() * (orders / (half * other.rigidity)).sqrt();
   }
@@ -447,8 +455,8 @@ BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const 
   frequencies_ = frequency_scale_ / normalised_->inverse_squares().array().sqrt();
 }
 
-// The moment m of the piezo layer is linear over each part of the beam, so the integral of m phi'' is that of (m phi')' - m'
-// phi'.
+// The modal force is the integral of m phi'', m being the moment of the piezo layer per volt. Over each part of the beam m is
+// linear, so the integral is that of (m phi')' - m' phi', which has a closed form.
 Eigen::VectorXd piezo_forces(const Device& device, const BeamModes& modes) {
   Eigen::VectorXd forces = Eigen::VectorXd::Zero(modes.count());
   for (const BeamSection& s : beam_sections(device)) {

@@ -85,10 +85,11 @@ class NormalisedModes {
   // Iterates Rayleigh quotients from the frequencies of the similar beam `near`. Returns false when the modes found may not be
   // those of lowest frequency.
   [[nodiscard]] bool follow(const NormalisedModes& near);
-  // Returns a position on the beam at which no mode has a node, for the receptance.
+  // Returns a position on the beam at which every mode moves: the receptance at this position has the frequencies of all modes
+  // as poles.
   [[nodiscard]] double moving_place() const;
-  // Returns the values (derivative 0) or slopes (derivative 1) of all shape functions, at x in units of the beam's length, or
-  // at xi in [-1, 1] over an element.
+  // Returns the values (derivative 0) or slopes (derivative 1) of all shape functions at a position: x in units of the beam's
+  // length, or xi in [-1, 1] along one element.
   [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;
   [[nodiscard]] Eigen::RowVectorXd shape(const BeamElement& element, double xi, int derivative) const;
   // Returns combinations of the shape functions that the supports of the beam permit, orthonormal in its elastic energy. The
@@ -102,11 +103,11 @@ class NormalisedModes {
   Eigen::MatrixXd shapes_;  // coefficients of the shape functions for each mode, one column per mode
   Eigen::VectorXd inverse_squares_;
   double moving_place_ = 1;
-  // Factors of the two motions of a rigid beam, translation and rotation, which are shape functions of a beam on springs at x =
-  // 0; 0 when the support there prevents the motion.
+  // Deflection of the rigid translation and slope of the rigid rotation, which are shape functions of a beam on springs at x =
+  // 0; 0 when the support prevents the motion. They are scaled so that the energy of the spring in the motion is below 1.
   double shift_ = 0, turn_ = 0;
-  // Columns with the coefficients of all modes that Ritz's method finds for a beam on springs or with linear sections, each
-  // with unit elastic energy; 1 / omega^2 of each mode.
+  // All modes that Ritz's method finds for a beam on springs or with linear sections: a column of coefficients for each mode,
+  // with unit elastic energy, and 1 / omega^2 of each mode.
   Eigen::MatrixXd all_motions_;
   Eigen::VectorXd all_inverse_squares_;
 };
@@ -128,16 +129,17 @@ class BeamModes {
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return scale_ / length_ * normalised_->slope(x / length_); }
   /// Returns the integrals over the beam of phi_i' phi_j', products of the slopes of the modes [1/(kg m)].
   [[nodiscard]] Eigen::MatrixXd slope_products() const { return scale_ * scale_ / length_ * normalised_->slope_products(); }
-  /// Returns the first angular frequency of the beam that is also held at deflection 0 at x, as in contact [rad/s].
+  /// Returns the first angular frequency of the beam when it is also held at deflection 0 at x [rad/s]: the frequency of the
+  /// closed switch, for a contact at x.
   [[nodiscard]] double pinned_frequency(double x) const {
     return frequency_scale_ / std::sqrt(normalised_->pinned_inverse_square(x / length_));
   }
 
   [[nodiscard]] const std::shared_ptr<const NormalisedModes>& normalised() const { return normalised_; }
   [[nodiscard]] double length() const { return length_; }  ///< length of the beam [m]
-  /// Returns mode shape over normalised mode shape, the same at all positions [kg^(-1/2)].
+  /// Returns the ratio of a mode shape to the normalised mode shape, which is the same for all modes and positions [kg^(-1/2)].
   [[nodiscard]] double scale() const { return scale_; }
-  /// Angular frequency over the normalised angular frequency [rad/s].
+  /// Returns the ratio of a mode's angular frequency to its normalised angular frequency [rad/s].
   [[nodiscard]] double frequency_scale() const { return frequency_scale_; }
 
  private:
@@ -148,14 +150,15 @@ class BeamModes {
   Eigen::VectorXd frequencies_;
 };
 
-/// Returns the modal forces per volt of the piezo layer on a beam with sections or layers: the integral of the layer's moment
-/// per volt and phi_i''.
+/// Returns the modal forces per volt of the piezo layer on a beam with sections or layers: the integrals over the beam of
+/// phi_i'' times the moment of the layer per volt [N kg^(-1/2) / V].
 [[nodiscard]] Eigen::VectorXd piezo_forces(const Device& device, const BeamModes& modes);
 
 /// Returns the law of mid-plane stretching of a beam between two clamps.
 [[nodiscard]] MidPlaneStretching stretching_of(const BeamModes& modes, const Structure& structure);
 
-/// Returns the modes of a device whose structure is a beam.
+/// Returns the modes of a device whose structure is a beam; `known` are normalised modes of an equal or similar beam, which
+/// make the search faster.
 [[nodiscard]] BeamModes beam_modes(const Device& device, std::shared_ptr<const NormalisedModes> known = {});
 
 }  // namespace softland

@@ -83,7 +83,7 @@ double stretch_per_force(const Structure& s) {
   for (const LocalSection& local : local_sections(s)) {
     const double length = local.end - local.begin, growth = local.end_width / local.width - 1;
     const double per_width = local.youngs_modulus * local.thickness * ligament_efficiency(local.holes);
-    // Take the mean of 1 / width over a section with linear width.
+    // The elongation of a section is proportional to the mean of 1 / width, which is a logarithm for a linear width.
     const double mean = growth == 0 ? 1 / local.width : std::log1p(growth) / (growth * local.width);
     sum += length * mean / per_width;
   }
@@ -160,7 +160,8 @@ double curl(const Device& device, double gradient, double x) {
   double offset = 0;
   for (const BeamSection& section : s.is_built() ? built_sections(device, gradient) : beam_sections(device)) {
     if (section.begin >= x) break;
-    // Distance of the position x from the begin of the section, and from its end if x is beyond it [m].
+    // Distances of x from begin and end of the section [m]; 0 for the end if x is within the section. A constant curvature k
+    // adds k (near^2 - far^2) / 2 to the deflection at x.
     const double near = x - section.begin, far = std::max(0.0, x - section.end);
     offset += (s.is_built() ? section.curvature : moment / section.rigidity) * (near * near - far * far) / 2;
   }
@@ -170,7 +171,8 @@ double curl(const Device& device, double gradient, double x) {
 double lowest_curl(const Device& device, double gradient) {
   double lowest = 0, offset = 0, slope = 0;
   for (const BeamSection& section : built_sections(device, gradient)) {
-    const double length = section.end - section.begin, flat = -slope / section.curvature;  // flat: where the curl's slope is 0
+    // Distance from the begin of the section at which the slope of the curl is 0 [m].
+    const double length = section.end - section.begin, flat = -slope / section.curvature;
     if (flat > 0 && flat < length) lowest = std::min(lowest, offset + slope * flat / 2);
     offset += (slope + section.curvature * length / 2) * length;
     slope += section.curvature * length;

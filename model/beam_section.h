@@ -1,4 +1,5 @@
-// Sections of a beam, their bending and their curl at rest, and the supports and axial force of the beam.
+// Sections of a beam with their rigidity and mass, the curl of a cantilever (its deflection at rest by a stress gradient), and
+// the supports and axial force of the beam.
 #pragma once
 
 #include <optional>

@@ -152,7 +152,7 @@ std::vector<LocalSection> local_sections(const Structure& s) {
     local.density = given_or(part.density, known(beam->density));
     local.holes = part.holes;
   }
-  all.back().end = s.length;  // the sum of the sections' lengths equals the length up to rounding
+  all.back().end = s.length;  // the sum of the sections' lengths may differ from the length by rounding
   return all;
 }
 

@@ -9,10 +9,10 @@
 //
 //   k = (k_low + k_high) / 2,   k_low = 1 - r,   k_high = (1 - r) / (1 - r + r^2),   r = s/p
 //
-// k_low and k_high are bounds. k_low: stress in the ligaments alone, 1 - r of the width, is in equilibrium (least complementary
-// energy). k_high: sections that stay plane, full between the holes and 1 - r of the width beside them, in series, are possible
-// displacements (least energy). The half distance of the bounds is 9 % of k at r = 0.2, and 14 % at r = 0.5, where it is
-// largest. Derived here.
+// k_low and k_high are bounds of the true stiffness. k_low: stress in continuous strips beside the holes alone, 1 - r of the
+// width, is in equilibrium (principle of least complementary energy). k_high: plane cross-sections stay plane. Their width is
+// whole between two rows of holes and 1 - r of it in a row, and both pieces act in series (principle of least energy). The half
+// distance of the bounds is 9 % of k at r = 0.2, and 14 % at r = 0.5, where it is largest. Derived here.
 #pragma once
 
 #include <optional>
@@ -26,7 +26,7 @@ namespace softland {
 /// One part of a structure with linear width and constant other properties.
 struct LocalSection {
   double begin = 0, end = 0;        ///< begin and end of the part along the structure [m]
-  double width = 0, end_width = 0;  ///< width across the structure at begin and end of the part, with its holes [m]
+  double width = 0, end_width = 0;  ///< width across the structure at begin and end of the part, not reduced by holes [m]
   double thickness = 0;             ///< thickness of the part [m]
   double youngs_modulus = not_given, density = not_given;  ///< Young's modulus [Pa] and density [kg/m^3] of a beam's part
   Holes holes = {};
@@ -42,12 +42,12 @@ struct LocalSection {
 /// Returns the ligament efficiency k, the share of the stiffness along the beam that remains beside the holes.
 [[nodiscard]] double ligament_efficiency(const Holes& holes);
 
-/// Returns the parts of a structure from end to end, each with linear width: a single part unless the structure has sections,
-/// or is a table of modes with widths.
+/// Returns the parts of a structure from end to end, each with linear width. A structure is a single part unless it is a beam
+/// with sections, or is given by a table of modes with widths.
 [[nodiscard]] std::vector<LocalSection> local_sections(const Structure& structure);
 /// Returns the part of the structure at x, with its width and thickness; where two parts meet, the part further from the clamp.
 [[nodiscard]] LocalSection section_at(const Structure& structure, double x);
-/// Returns the width across the structure at x, with its holes [m].
+/// Returns the width across the structure at x, not reduced by holes [m].
 [[nodiscard]] double width_at(const Structure& structure, double x);
 /// Returns the edges of sections and layers of a beam, from 0 to its length [m]; for all other structures 0 and the length.
 [[nodiscard]] std::vector<double> edges_of_parts(const Structure& structure);

@@ -20,7 +20,7 @@ Eigen::MatrixXd stiffness_at(const Switch& model, const Eigen::VectorXd& q, std:
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
   Eigen::MatrixXd by_q(n, n), by_v(n, n), force(n, 1);
   Switch::Workspace work = model.workspace();
-  // Sets the gap field in `work` for jacobian().
+  // Call accelerations() for the gap field in `work`, which jacobian() needs.
   model.accelerations(q.data(), still.data(), volts, contact, work, force.data());
   model.jacobian(q.data(), still.data(), volts, contact, work, by_q, by_v);
   return -(by_q + by_q.transpose()) / 2;
@@ -67,8 +67,9 @@ ClosedEquilibrium closed_at(const Switch& model, const Eigen::VectorXd& q, doubl
           .smallest_eigenvalue = smallest_closed_eigenvalue(model, q, volts)};
 }
 
-// Searches deeper from `depth` for the place where f(depth) first rises to zero, and returns the depths of the steps around it.
-// Just before a beam collapses onto the electrode f may rise to zero and fall again within one step.
+// Searches deeper from `depth` for the first depth at which f rises to zero, and returns the depths of the steps around it.
+// Just before a beam collapses onto the electrode f may rise above zero and fall again within one step: where f has a maximum,
+// the maximum is computed and compared with zero.
 template <class F>
 std::optional<Steps> first_enough(F&& f, double depth, double step) {
   auto turn = walk(f, depth, step, [](double value, double here) { return here >= 0 || here < value; });
@@ -85,23 +86,23 @@ double static_push(const Switch& model, const Eigen::VectorXd& q) {
 }
 
 // Finds how a beam rests on the face of a dielectric: on the spot of first touch, or with most of its length. Newton's method
-// descends the potential from `q`, downhill along every eigenvector. A step changes no gap (that of the air plus the
-// dielectric's equivalent depth) by more than a given share, so that the search does not jump over the maximum of the potential
-// before the face.
+// minimises the potential from `q`, with steps downhill along every eigenvector of the stiffness. A step changes no electrical
+// gap (air gap plus equivalent depth of the dielectric) by more than a share of it, the trust radius. So the search does not
+// jump over the maximum of the potential that a beam passes before it reaches the face.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts, Eigen::VectorXd q) {
   constexpr int most_steps = 1000;
-  constexpr double longest = 0.05, shortest = 1e-9;  // limits of the largest change of a gap in a step, as shares of this gap
-  constexpr double least_gap = 0.25;                 // least gap in this limit, over the dielectric's equivalent depth
-  constexpr double rounding = 1e-12;                 // relative change of the potential energy that counts as rounding
-  // Least eigenvalue of the stiffness in a Newton step, over that of the modes alone; step over its limit below which a state
-  // with a negative eigenvalue is a saddle.
+  constexpr double longest = 0.05, shortest = 1e-9;  // largest trust radius, and the radius at which the search ends
+  constexpr double least_gap = 0.25;  // electrical gaps count as at least this share of the dielectric's equivalent depth
+  constexpr double rounding = 1e-12;  // relative change of the potential energy that counts as rounding
+  // Least eigenvalue of the stiffness, relative to the modes alone, that Newton's step uses. Share of the trust radius below
+  // which a step shows, at a negative eigenvalue, that the forces vanish: the state is a saddle.
   constexpr double least_stiffness = 1e-9, at_saddle = 1e-2;
   Statics statics(model);
   Switch::Workspace work = model.workspace();
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
   const Eigen::VectorXd compliance = model.basis().angular_frequencies().cwiseInverse();
   const double depth = model.device().dielectric_depth();
-  // A contact at a point exerts no force while the beam does not touch the contact.
+  // A contact at a single point is active only while the beam touches it; a contact along a pad or a face always is.
   const auto contact_at = [&](const Eigen::VectorXd& at) -> ContactState {
     return model.has_spread_contact() || model.contact_deflection(at.data()) > model.contact_gap() - model.contact_reach();
   };
@@ -119,7 +120,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
                                       .cwiseQuotient(along.values.cwiseAbs().cwiseMax(least_stiffness));
     Eigen::VectorXd step = (along.vectors * parts).cwiseProduct(compliance);
     double reach = reach_of(step);
-    if (along.values[0] < 0 && reach < at_saddle * radius) {  // a saddle: the forces vanish
+    if (along.values[0] < 0 && reach < at_saddle * radius) {  // saddle: step along the eigenvector of the negative eigenvalue
       step = along.vectors.col(0).cwiseProduct(compliance);
       step *= radius / reach_of(step);
       reach = radius;
@@ -139,8 +140,8 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
     radius = std::min(2 * radius, longest);
   }
   if (!contact_at(q).active) return std::nullopt;
-  // Improve q by Newton's method for the equilibrium. It may oscillate, and q then remains, when the edge of the touching part
-  // of the beam is at a quadrature point.
+  // Improve q by Newton's method for the equilibrium. When the edge of the touching part of the beam is at a quadrature point,
+  // the method may oscillate; q then stays as it is.
   if (const auto found = statics.closed(volts, q)) q = *found;
   const double push = static_push(model, q);
   if (!(push > 0)) return std::nullopt;
@@ -148,9 +149,9 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
   return found.smallest_eigenvalue > 0 ? std::optional(found) : std::nullopt;
 }
 
-// Finds the closed equilibrium with a search that begins where a force at the first contact holds the beam on the plane of this
-// contact. A second search begins on the dielectric's face when the first contact is another one: the beam may move from the
-// face to the first contact.
+// Finds the closed equilibrium of a switch whose beam may rest on a dielectric's face. The search begins in the state in which
+// a force at the first contact holds the beam on the plane of this contact. If the face is not the first contact, and this
+// search fails, a second one begins with the beam held on the face: from there the beam may move to the first contact.
 std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<const double> volts) {
   const Eigen::VectorXd squares = model.basis().angular_frequencies().cwiseAbs2();
   const auto held_at = [&](std::size_t c) {
@@ -180,8 +181,8 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
     if (!held) return no_equilibrium;
     return (model.has_spread_contact() ? 0 : contact_force(model.contact(), depth)) - held->unknown;
   };
-  // The contact can hold the beam only if the beam presses harder than the contact pushes back at the depth of the least
-  // excess(). The equilibrium is deeper, where both forces are equal.
+  // The closed equilibrium exists only if, at some depth, the beam presses harder than the contact pushes back: at the minimum
+  // of excess(). The equilibrium is deeper, where both forces are equal.
   const auto hardest = first_minimum(excess, step);
   if (!hardest || !(hardest->value < 0)) return std::nullopt;
   const std::optional<Steps> over = first_enough(excess, hardest->depth, step);

@@ -113,7 +113,7 @@ class ClosingRun {
   void on_event(const Event& event) {
     FollowedContact& c = parts_.contacts[event.contact];
     TrajectoryPoint& p = c.pending_knots.last_waiting();
-    // Put the contact point exactly on the position of the event, from which it differs by rounding.
+    // Set the position of the contact point to that of the event, from which the computed position differs by rounding.
     if (event.edge) p.position = event.edge->level;
     if (p.position == c.plane && !model_.has_spread_contact(event.contact)) p.contact_force = 0;
     audit_.settle(here());
@@ -132,8 +132,8 @@ class ClosingRun {
       c.phase.enter(event.edge->next, event.edge->zone);
     } else {
       change.kind = PhaseChange::Kind::turn;
-      // Switch the contact law to unloading. The deepest interference, on which unloading depends, includes the small distance
-      // over which the contact point still decelerates to rest.
+      // The contact law changes to unloading, which depends on the deepest interference. The event comes slightly before the
+      // contact point is at rest, so the remaining distance is added, at constant acceleration.
       c.phase.turn(p.position - c.plane - (p.acceleration < 0 ? p.velocity * p.velocity / (2 * p.acceleration) : 0));
     }
     change.after = c.phase.law();
@@ -176,8 +176,9 @@ class ClosingRun {
     check_interval(field);
   }
 
-  // Returns true when the beam is below the smallest valid gap over an electrode. A beam that closes on a dielectric's face may
-  // swing lower beside the electrodes; for all other devices every point counts.
+  // Returns true when the beam is below the smallest valid gap (Switch::gap_floor()) at a point over an electrode, so that the
+  // run fails. A beam that closes on a dielectric's face may swing lower beside the electrodes, where nothing stops it. For all
+  // other devices the gap is too small wherever it occurs.
   [[nodiscard]] bool is_over_electrode() {
     const Device& device = model_.device();
     if (!device.lands_along_face() || device.structure.is_rigid()) return true;
@@ -313,7 +314,7 @@ class ClosingRun {
   ClosingParts parts_;
   Stepping stepping_;
   EnergyAudit audit_;
-  double stop_ = 0;  // end of the interval between two waveform breakpoints [s]
+  double stop_ = 0;  // end of the interval between two waveform breakpoints that is being integrated [s]
   bool ended_ = false;
   Trajectory out_;
 };

@@ -6,10 +6,10 @@
 // ever integrates smooth right-hand sides. At a rigid contact the velocity is reversed, or the plate rests and nothing is
 // integrated until the drives pull the plate off.
 //
-// Within a step the contact point moves as the free modes do, plus a quintic (integrators/modal_motion.h). Contact events are
-// the zeros between the extrema of that motion, searched in pieces of the step, each a fraction of a radian of the fastest mode
-// (so no grazing touch is missed). A step with an event is repeated so that it ends at the event. The trajectory has a knot
-// (point of the simulated motion) at the end of every piece.
+// Within a step the motion of the contact point is interpolated: the free vibration of the modes plus a quintic polynomial
+// (integrators/modal_motion.h). Contact events are the zeros between the extrema of this interpolant, searched in pieces of the
+// step, each a fraction of a radian of the fastest mode (so no grazing touch is missed). A step with an event is repeated so
+// that it ends at the event. The trajectory has a knot (point of the simulated motion) at the end of every piece.
 //
 // Error weights: a mode's coordinate counts by the deflection that it causes at the contact point, its velocity by this
 // deflection times the frequency of the mode. In flight the tolerance is relative to the contact gap, in contact to the
@@ -54,8 +54,9 @@ struct ClosingOptions {
   double tolerance = 1e-6;  ///< relative tolerance of the integrator
   Integrator integrator = Integrator::automatic;
   double after_contact = std::numeric_limits<double>::infinity();  ///< time from the first touch to the end of the run [s]
-  double no_end_before = 0;  ///< earliest end of a run with a touch, also if after_contact is over [s]
-  double no_contact_before = std::numeric_limits<double>::infinity();  ///< time at which a run without a touch ends [s]
+  double no_end_before = 0;  ///< earliest end of a run with a touch, even when the time after_contact has passed [s]
+  /// Time at which a run ends if the switch has not touched by then [s].
+  double no_contact_before = std::numeric_limits<double>::infinity();
   long max_steps = 2'000'000;  ///< largest number of integration steps: a run that needs more ends as numerical_failure
   /// If false, the integrator does not stop at make and break of contact: the contact force begins within a step, and the times
   /// of make and break are as exact as the interpolation in the step. The tolerance of motion in contact applies to the whole

@@ -31,12 +31,13 @@ void span(double begin, double end, double length, const std::string& name) {
   });
 }
 
-/// Checks the ranges of the numbers in `owner`, a part of the device. An optional number may also have its value in `unset`,
-/// which stands for an absent number.
+/// Checks the ranges of the numbers in `owner`, a part of the device. A number that a scene may leave out may also have the
+/// value that it has in `unset`, a part without given values.
 template <class Owner>
 void check_fields(const std::string& part, Owner owner, Owner unset, std::span<const Field<Owner>> fields) {
   for (const Field<Owner>& field : fields) {
-    // Skip numbers of the device without a range, numbers whose range only scene files check, and numbers with a separate rule.
+    // Skip fields that are not numbers in `owner` or have no range, and numbers whose range only the reader of scene files
+    // checks.
     if (field.in == nullptr || !field.beyond.empty() || field.range == Range{}) continue;
     const double value = field.in(owner), missing = field.in(unset);
     const bool may_miss = !field.required || !field.instead_of.empty() || !field.unless.empty();
@@ -360,8 +361,8 @@ std::optional<ContactConflict> contact_conflict(const Device& d) {
 }
 
 std::string why_not_along_pad(const Structure& structure, const Contact& contact) {
-  // Largest pad length, as a share of the beam's. Along such a pad the first mode deviates from its tangent by 5e-5 of the
-  // deflection at the free end.
+  // Largest length of a contact pad that counts as straight, as a share of the beam's length. Along such a pad the first mode
+  // deviates from its tangent by 5e-5 of the deflection at the free end.
   constexpr double longest = 0.1;
   if (structure.is_rigid()) return "a plate touches with all of its pad at once, as at the centre";
   if (contact.at) return "needs a pad that ends at the free end: 'at' says another place";

@@ -1,5 +1,6 @@
-// The description of a switch, as plain numbers in SI units. The effect of an absent part is not simulated. Coordinates:
-// x along the beam from the clamped end; deflection y and every force positive towards the electrode.
+// The description of a switch, as plain numbers in SI units. A part that the description leaves out, such as gas or a piezo
+// layer, has no effect in a simulation. Coordinates: x along the beam from the clamped end; deflection y and every force
+// positive towards the electrode.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +24,10 @@
 namespace softland {
 
 struct Gap {
-  double electrode = 0;  ///< distance between beam and electrode at rest [m]
-  double contact = 0;    ///< distance of the first contact from its plane at rest; free travel if there is no contact [m]
+  double electrode = 0;  ///< distance between straight beam and near electrode at rest [m]
+  /// Distance between the straight beam and the plane of the first contact at rest; without a contact, the deflection at which
+  /// a run ends [m].
+  double contact = 0;
 };
 
 /// The contact of a beam with the face of a dielectric: the pressure of the face on the beam, see model/contact/face.h. The
@@ -62,7 +65,9 @@ struct Dielectric {
 /// An electrode: one or several pads at one voltage.
 struct Electrode {
   std::string name = {};
-  Place begin;  ///< begin of the first pad; for a plate only end - begin counts: electrode area over plate width
+  /// Begin and end of the first pad along a beam. For a plate only end - begin counts: the area of the electrode over the width
+  /// of the plate.
+  Place begin;
   Place end;
   std::vector<Span> further = {};  ///< pads of the electrode besides the first pad
   Fringing fringing = Fringing::meijs_fokkema;
@@ -127,11 +132,11 @@ struct Surface {
 /// The conditions for the electrical connection (the signal path through the contacts) to count as closed. Without bounds of
 /// force and resistance the connection is closed while its contacts touch.
 struct ElectricalClosing {
-  /// Contact force that a closed connection exceeds [N]; NaN: no bound.
+  /// Contact force above which the connection counts as closed [N]; NaN: no bound.
   double force = std::numeric_limits<double>::quiet_NaN();
-  /// Resistance that a closed connection is below [Ohm]; NaN: no bound.
+  /// Resistance below which the connection counts as closed [Ohm]; NaN: no bound.
   double resistance = std::numeric_limits<double>::quiet_NaN();
-  /// Duration up to which electrical openings do not count [s]; NaN: all count.
+  /// Electrical openings of at most this duration do not count [s]; NaN: every opening counts.
   double after = std::numeric_limits<double>::quiet_NaN();
 
   [[nodiscard]] bool is_asked() const { return force >= 0 || resistance > 0 || after >= 0; }
@@ -173,8 +178,8 @@ struct Device {
   [[nodiscard]] double contact_position(std::size_t contact = 0) const;
   /// Returns the distance of the structure at rest from its straight shape at x, away from the near electrode [m].
   [[nodiscard]] double rest_offset(double x) const;
-  /// Returns the distance of a contact from its plane at rest [m]: the gap of the straight shape plus the offset of the rest
-  /// shape.
+  /// Returns the distance of the contact point from the contact plane at rest [m]: the gap of the straight shape plus the
+  /// offset of the rest shape.
   [[nodiscard]] double contact_gap(std::size_t contact = 0) const;
   /// Returns the contact law of the dielectrics' faces, which is the same for all dielectrics with a `landing`; null when none
   /// has one.
@@ -193,7 +198,7 @@ struct Device {
   [[nodiscard]] double dielectric_depth() const;
   /// Returns true when there is a charge on the dielectric of an electrode.
   [[nodiscard]] bool is_charged() const;
-  /// Returns true when the contact acts along its pad, not at a single point.
+  /// Returns true when the contact force is distributed along the contact's pad and does not act at a single point.
   [[nodiscard]] bool touches_along_pad() const {
     return has_contact() && contacts.front().distribution == ContactDistribution::pad;
   }

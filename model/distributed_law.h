@@ -1,7 +1,8 @@
-// A force law that acts along the beam, behind one virtual call per law and right-hand side. A law is a small value type with
-// load(gap, velocity), a template over the scalar type (double for runs, Dual for exact derivatives). A conservative law acts
-// by itself or is scaled by a drive (drive_depends): by V^2 of an electrode, or by the factor of the dispersion force. A
-// conservative law also has potential(gap), whose slope is the load. All other laws dissipate energy.
+// A force law that acts along the beam. One virtual call computes the load at all points in an evaluation of the accelerations.
+// A law is a small value type with load(gap, velocity), a template over the scalar type (double for runs, Dual for exact
+// derivatives). A conservative law acts by itself or is scaled by a drive (drive_depends): by V^2 of an electrode, or by the
+// factor of the dispersion force. A conservative law also has potential(gap), whose slope is the load. All other laws dissipate
+// energy.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,8 +28,9 @@ struct GapField {
 class DistributedLaw {
  public:
   virtual ~DistributedLaw() = default;
-  /// Adds the load of the force law [N/m], times `drive` for a law that a drive scales, at the points on which the law acts.
-  /// `load` is as long as the arrays of the gap field.
+  /// Adds the load of the force law [N/m] at the points on which the law acts. The load of a law that a drive scales is
+  /// multiplied by `drive`, the strength of the drive: V^2, or the factor of the dispersion force. `load` is as long as the
+  /// arrays of the gap field.
   virtual void add_load(const GapField& field, double drive, double* load) const = 0;
   /// Adds derivatives of the load with respect to deflection and velocity at the points on which the force law acts. The arrays
   /// are as long as those of the gap field.
@@ -60,8 +62,8 @@ class DistributedLawOf final : public DistributedLaw {
     const double factor = Law::drive_depends ? drive : 1;
     const Law law = law_;  // a local copy lets the compiler keep the law's parameters in registers
     if (field.smallest_gap >= floor_) {
-      // Loop over whole SIMD vectors, so that the compiler uses vector instructions; a scalar loop over left-over points would
-      // take as long.
+      // Loop over whole SIMD vectors, so that the compiler uses vector instructions: a scalar loop over the points beside the
+      // last whole vector would take as long as this.
       const double* share = share_.data();
       for (Eigen::Index p = begin_ / lanes * lanes; p < share_.size(); p += lanes) {
         double sum[lanes];
@@ -73,7 +75,7 @@ class DistributedLawOf final : public DistributedLaw {
       return;
     }
     for (Eigen::Index p = begin_; p < end_; ++p) {
-      if (!Law::drive_depends && gap[p] >= floor_) {  // a film law at a valid gap needs no derivative
+      if (!Law::drive_depends && gap[p] >= floor_) {  // above floor_ the tangent, and so a derivative, is not needed
         load[p] += law.load(gap[p], velocity[p]);
         continue;
       }
@@ -112,8 +114,8 @@ class DistributedLawOf final : public DistributedLaw {
     for (Eigen::Index p = begin_; p < end_; ++p) {
       const double gap = field.gap[p], velocity = field.velocity[p];
       if (gap < floor_) continue;
-      // Returns a second derivative of the load; 1 selects the gap for the outer or inner direction of the dual numbers, 0 the
-      // velocity.
+      // Returns a second derivative of the load: once by the variable of the outer dual numbers and once by that of the inner
+      // ones. An argument of 1 chooses the gap as this variable, 0 the velocity.
       const auto mixed = [&](double gap_outer, double gap_inner) {
         return law_
             .load(DualOf<Dual>(Dual(gap, gap_inner), Dual(gap_outer)),
@@ -157,8 +159,8 @@ class DistributedLawOf final : public DistributedLaw {
         by_deflection[p] -= by_gap, by_velocity[p] += by_rate;
         continue;
       }
-      // The load is the tangent at the gap floor_, and its slope depends on the velocity too. So the outer direction of the
-      // dual numbers is the gap, and the inner direction the velocity.
+      // Below floor_ the load is the tangent at the gap floor_, whose slope by the gap depends on the velocity. Its derivative
+      // by the velocity needs the mixed derivative: the outer dual numbers vary the gap, the inner ones the velocity.
       const double gap = std::max(field.gap[p], floor_);
       const auto at = law_.load(DualOf<Dual>(gap, 1), DualOf<Dual>(Dual(field.velocity[p], 1)));
       by_deflection[p] -= factor * at.slope.value;

@@ -57,7 +57,7 @@ struct DualOf {
   T value = 0;
   Slope slope = {};
 
-  constexpr DualOf(T v = 0, Slope s = {}) : value(v), slope(s) {}  // not explicit, since formulas mix dual and plain numbers
+  constexpr DualOf(T v = 0, Slope s = {}) : value(v), slope(s) {}  // not explicit: formulas mix dual and plain numbers
 
   friend constexpr DualOf operator+(DualOf a, DualOf b) { return {a.value + b.value, a.slope + b.slope}; }
   friend constexpr DualOf operator-(DualOf a, DualOf b) { return {a.value - b.value, a.slope - b.slope}; }
@@ -69,8 +69,7 @@ struct DualOf {
   friend DualOf sqrt(DualOf a) {
     using std::sqrt;
     const T root = sqrt(a.value);
-    // The slope of a root at 0 is infinite; take 0, since the laws use roots only in products whose slope there has the limit
-    // 0.
+    // The slope of a root at 0 is infinite. Take 0: the laws use a root only in a product whose slope at 0 has the limit 0.
     return {root, select(
                       root > 0, [&]() -> Slope { return a.slope / (2 * root); }, [] { return Slope{}; })};
   }

@@ -19,8 +19,9 @@ namespace softland::statics {
 
 inline constexpr double no_equilibrium = std::numeric_limits<double>::quiet_NaN();
 
-// A static equilibrium with the contact point held at a given deflection. `unknown` is the strength of the drive that holds the
-// contact point (V^2 of an electrode, the factor of the dispersion force), or the force of an ideal support there [N].
+// A static equilibrium with the contact point held at a given deflection. `unknown` is what holds the contact point: the
+// strength of a drive (V^2 of an electrode, the factor of the dispersion force), or the force of a rigid support at this point
+// [N].
 struct Held {
   Eigen::VectorXd q;
   double unknown = 0;
@@ -43,8 +44,8 @@ class Statics {
   // Finds the equilibrium in which `drive` holds the contact point at deflection s [m] against the contact force, with the
   // other drives at `bias`.
   std::optional<Held> on_branch(std::size_t drive, std::span<const double> bias, double s, Held start) {
-    // Compute the force of the drive at unit strength from the forces at strength `scale`, near the result, and at strength 0.
-    // At a small strength rounding of the other forces would dominate the difference.
+    // Compute the force of the drive at unit strength as a difference of static forces: at strength `scale`, near the result,
+    // less that at strength 0, over `scale`. At a small `scale` rounding of the other forces would dominate the difference.
     const double scale = start.unknown > 0 ? start.unknown : 1;
     std::vector<double> some(bias.begin(), bias.end()), none = some;
     some[drive] = model_.value_of_strength(drive, scale);
@@ -112,8 +113,8 @@ class Statics {
  private:
   static constexpr int most_iterations = 60;
 
-  // Computes static modal forces and their derivative by the modal coordinates, without the force of a contact that acts at the
-  // held point.
+  // Computes static modal forces and their derivative by the modal coordinates. A contact at a single point is left out: its
+  // force at the given deflection is known, or part of `unknown`.
   void evaluate(const Eigen::VectorXd& q, std::span<const double> volts, Eigen::VectorXd& force, Eigen::MatrixXd& by_q) {
     evaluate(q, volts, model_.has_spread_contact(), force, by_q);
   }
@@ -166,7 +167,7 @@ class Statics {
   Eigen::VectorXd rest_, squares_;
 };
 
-// Returns the values of all drives at a bias (constant voltages of the other drives), with `drive` itself at 0.
+// Returns the values of all drives under a bias: the constant voltages of the other drives, and 0 for `drive` itself.
 std::vector<double> standing(const Switch& model, std::size_t drive, Bias bias) {
   require(bias.empty() || bias.size() == model.drives(), "a bias needs a value for every drive of the switch");
   std::vector<double> values(bias.begin(), bias.end());
@@ -200,8 +201,8 @@ class EquilibriumBranch {
     return true;
   }
 
-  // Finds the equilibrium at deflection s [m] in shorter steps from the last one: near the face of a thin dielectric the field
-  // grows so fast that Newton's method fails for long steps.
+  // Finds the equilibrium at deflection s [m] in shorter steps of the deflection, from the last equilibrium found. Near the
+  // face of a thin dielectric the field grows so fast that Newton's method fails for long steps.
   bool walks(double s) {
     constexpr int most_steps = 100;
     constexpr double shortest = 1e-6;  // shortest step of the deflection, as a share of the distance to s
@@ -230,14 +231,14 @@ class EquilibriumBranch {
 
 inline constexpr int branch_steps = 64;
 
-// Three successive depths of a search beyond the contact plane [m]; `before` equals `last` if the search stops at its first
-// step.
+// The last three of the depths beyond the contact plane that a search has tried [m]: the search stopped because of the values
+// at `last` and `next`. `before` equals `last` if it stopped at its first step.
 struct Steps {
   double before, last, next;
 };
 
-// Evaluates f at depths from `depth` on, deeper in growing steps, until stop(f at a depth, f one step deeper) is true. Halves
-// the step where f becomes NaN (the beam would reach the electrode); returns nothing when the step becomes too short.
+// Evaluates f at `depth` and deeper, in growing steps, until stop(f at a depth, f one step deeper) is true. Halves the step
+// where f becomes NaN (the beam would reach the electrode); returns nothing when the step becomes too short.
 template <class F, class Stop>
 std::optional<Steps> walk(F&& f, double depth, double step, Stop&& stop) {
   constexpr double growth = 1.2;

@@ -3,8 +3,8 @@
 //   f(h, v) = -law(H - h, -v)       H = d0 + d_far
 //
 // h is the local gap on the near side [m], v the velocity towards the near side [m/s], d0 and d_far the rest gaps of both sides
-// [m]. Below the far gap `floor` the law is continued by its tangent: a run ends at this gap. Laws of the velocity are linear
-// in the velocity.
+// [m]. Below the far gap `floor`, at which a run ends, the law is continued by its tangent. A law that depends on the velocity
+// must be linear in it.
 #pragma once
 
 #include "model/dual.h"

@@ -55,7 +55,8 @@ Eigen::MatrixXd Switch::free_motion_curvature(const double* q, const double* v, 
   Eigen::MatrixXd curvature =
       Eigen::MatrixXd::Zero(2 * n + static_cast<Eigen::Index>(drives()), 2 * n + static_cast<Eigen::Index>(drives()));
   set_free_field(q, v, work);
-  // The derivative of the sum over modes of multiplier_i q_i'' by the load at each quadrature point.
+  // The derivative, by the load at each quadrature point, of the sum over modes of multiplier_i q_i''. It weights the second
+  // derivatives of the load.
   const Eigen::ArrayXd share = (quadrature_.weighted_shapes() * Eigen::Map<const Eigen::VectorXd>(multipliers, n)).array();
   Eigen::ArrayXd by_deflections = Eigen::ArrayXd::Zero(points), by_both = by_deflections, by_velocities = by_deflections;
   for (const auto& law : passive_laws_)

@@ -19,13 +19,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double longest_angle = 2.5;  // bound of a part: its duration times the norm of the matrix A of the equations
+constexpr double longest_angle = 2.5;  // largest duration of a part of a step, times the norm of the equations' matrix A
 constexpr int most_parts = 4096;       // largest number of parts into which an integration step is divided
-constexpr int parts_at_edge = 6;       // number of parts of an integration step at whose begin or end a contact closes or opens
+// Least number of parts of a step in contact that begins or ends with a change of the contact law.
+constexpr int parts_at_edge = 6;
 constexpr Index lane_size = lanes;
 
 // Returns the number of terms after which the Taylor series of the exponential of a matrix with this norm is accurate to
-// rounding. It is at least 3, the number of terms that inputs quadratic in time need.
+// rounding. It is at least 3: the contribution of drives that are quadratic in time needs 3 terms.
 int terms_of_exponential(double norm) {
   constexpr int fewest = 3;
   constexpr double rounding = 1e-13;
@@ -51,8 +52,8 @@ double column_norm(const double* x, Index size, Index stride) {
   return largest.maxCoeff();
 }
 
-// Returns the shares of an integration step at which its parts end. Parts are shorter near the begin or end of contact, since
-// the stiffness of a contact grows like the root of the time from there.
+// Returns the ends of the parts of an integration step, as shares of its duration. Parts are shorter near a touch or
+// separation, since the stiffness of a contact grows like the root of the time from there.
 std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge) {
   std::vector<double> ends;
   for (int k = 1; k <= parts; ++k) {
@@ -126,7 +127,7 @@ void LinearizedClosing::note_passage(const PhaseChange& change) {
   if (!arcs_.empty() && change.kind == PhaseChange::Kind::turn) arcs_.back().turns = true;
 }
 
-// Adds a set of signal pieces to pieces_ for every drive whose signal enters its next piece (between breakpoints) at time t.
+// Adds an entry to pieces_, the signal pieces in use, for every drive that enters its next piece (at a breakpoint) at time t.
 void LinearizedClosing::enter_pieces(double t) {
   for (std::size_t k = 0; k < signals_.size(); ++k) {
     const std::vector<SignalPiece>& all = signals_[k].pieces();
@@ -193,7 +194,8 @@ void LinearizedClosing::linearize_step() {
   add_parts(step, contact.active && after_edge, contact.active && before_edge);
 }
 
-// Computes the derivative of the rest position at the start by each device parameter: the shift that keeps static forces at 0.
+// Computes the derivative of the rest position at the start by each device parameter: the shift of the modal coordinates that
+// keeps the static forces at 0 when the parameter changes.
 void LinearizedClosing::begin_at_rest() {
   rest_ = MatrixXd::Zero(size_, moving_);
   const std::vector<double> before = values_before(signals_);
@@ -248,9 +250,9 @@ void LinearizedClosing::set_node(Node& node, double t, const double* q, const do
   }
 }
 
-// Computes the exponent h / 6 (A0 + 4 A1 + A2) - h^2 / 12 [A1, A2 - A0] of Magnus' series, h being the duration of a part,
-// block by block. A0, A1, A2 are the matrices (0, fastest; by_q, by_v) of the linearised equations at its begin, middle and
-// end.
+// Computes the exponent h / 6 (A0 + 4 A1 + A2) - h^2 / 12 [A1, A2 - A0] of Magnus' series for a part of duration h. A0, A1, A2
+// are the matrices A of the linearised equations at begin, middle and end of the part. They have the blocks 0 and fastest_
+// times the unit matrix (above), by_q and by_v (below), so that the exponent is computed block by block.
 void LinearizedClosing::add_transition(double begin, double end, std::size_t arc) {
   using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_modes, most_modes>;
   const std::size_t at = numbers_.size();

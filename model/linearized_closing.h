@@ -34,9 +34,9 @@
 
 namespace softland {
 
-/// The derivative of a figure of merit by a parameter p, as weights of d = dy/dp, the derivative of the state y, at the end of
-/// an arc (step of the recorded motion), before an event at this time. A figure measured at a time at which a signal piece
-/// begins (a breakpoint) also has `moved`, its derivatives by such times. A figure that depends on the device at fixed q and v
+/// The derivative of a figure of merit by a parameter p, as weights of d = dy/dp, the derivative of the state y. d is taken at
+/// the ends of arcs (steps of the recorded motion), before any jump of d there. A figure that is measured at a breakpoint of a
+/// drive also has `moved`, its derivative by the time of the breakpoint. A figure that depends on the device at fixed q and v
 /// also has derivatives by each of SwitchSlopes::moving().
 struct FigureSlope {
   struct Weights {
@@ -46,7 +46,7 @@ struct FigureSlope {
   };
   struct Moved {
     std::size_t drive = 0, piece = 0;
-    double rate = 0;  ///< derivative of the figure by the time at which this piece of the drive's signal begins [1/s]
+    double rate = 0;  ///< derivative of the figure by the time at which this piece of the signal begins [per s]
   };
   std::vector<Weights> weights = {};
   std::vector<Moved> moved = {};
@@ -58,8 +58,8 @@ class LinearizedClosing {
   /// One number per mode, stored without an allocation.
   using Modal = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_modes, 1>;
 
-  /// A step of the recorded motion; a step in which the velocity of the contact point changes sign is split at this time into
-  /// two.
+  /// A step of the recorded motion. A step within which the velocity of the contact point changes its sign is split into two
+  /// arcs at that time.
   struct Arc {
     double begin = 0, end = 0;  ///< begin and end of the arc (step of the motion) [s]
     Modal q, v;                 ///< modal coordinates and velocities at the end of the arc (step of the motion)
@@ -67,17 +67,19 @@ class LinearizedClosing {
     bool turns = false;         ///< true when the contact point's velocity changes sign at the end of the arc
     ContactState contact;
     std::size_t step = 0;            ///< index of the step of the recorded motion to which the arc belongs
-    std::size_t pieces_entered = 0;  ///< index in pieces_ of the signal pieces in use, see pieces()
+    std::size_t pieces_entered = 0;  ///< index in pieces_ of the signal pieces in use in the arc, see pieces()
   };
-  /// A change of the contact law from one of its curves to another, after the first `arcs` elements of arcs().
+  /// A change of the contact law from one of its curves to another, in the order of time: `arcs` is the number of arcs before
+  /// it.
   struct PhaseEvent {
     std::size_t arcs = 0;
     PhaseChange change;
   };
 
   /// Linearises a closing under these drive signals that was simulated with restart_at_contact and recorded in `tape`. Keeps
-  /// references to its arguments. A step has at least `refinement` parts. `by_device` gives the derivatives of the switch by
-  /// the parameters, as many as those of the signals; null when the parameters do not change the switch.
+  /// references to its arguments. An integration step is divided into at least `refinement` parts. `by_device` gives the
+  /// derivatives of the switch by the parameters, the same ones as those of the signals; null when no parameter changes the
+  /// switch.
   LinearizedClosing(const Switch& model, std::span<const Signal> signals, const RecordedMotion& tape, int refinement = 1,
                     SwitchSlopes* by_device = nullptr);
 
@@ -99,11 +101,11 @@ class LinearizedClosing {
  private:
   using Index = Eigen::Index;
 
-  // The derivatives of the modal accelerations at one time of the motion, by modal coordinates times the fastest frequency, by
-  // velocities and by inputs.
+  // The derivatives of the modal accelerations at one time of the motion: by the scaled modal coordinates (q times the fastest
+  // angular frequency), by the velocities v, and by the inputs.
   struct Node {
     Eigen::MatrixXd by_q, by_v;
-    Eigen::MatrixXd inputs;  // derivatives by voltages of the drives, residual interference, device parameters
+    Eigen::MatrixXd inputs;  // derivatives by drive voltages, residual interference and device parameters, the inputs
   };
   // A part of an integration step of the recorded motion, short enough for Magnus' series.
   struct Part {
@@ -112,20 +114,21 @@ class LinearizedClosing {
     bool ends_arc = false;
     int terms = 0;  // number of terms in the Taylor series of the matrix exponential
   };
-  // The matrix of Magnus' series for a part of a step, and derivatives of the accelerations by the inputs: pointers into
-  // numbers_.
+  // The coefficients of the linearised equations over a part of a step, as pointers into numbers_: the matrix of Magnus'
+  // series, and the derivatives of the modal accelerations by the inputs.
   struct Transition {
     const double* magnus;  // matrix of Magnus' series; rows are padded to whole SIMD vectors
     const double* begin;   // derivatives by the inputs at the start of the part, modes x inputs
     const double* middle;  // derivatives by the inputs in the middle of the part, modes x inputs
     const double* end;     // derivatives by the inputs at the end of the part, modes x inputs
   };
-  // The change at an event of d = dy/dp, whose last row is the derivative of the contact's residual interference: d becomes
-  // matrix * d + by_device + the terms of `moved`. Without a matrix the first term is d.
+  // The jump of d = dy/dp at an event; the last row of d is the derivative of the contact's residual interference. After the
+  // jump d is matrix * d + by_device + the terms of `moved`.
   struct Jump {
-    std::size_t parts = 0;                                              // number of parts (of all steps) before the event
-    std::optional<Eigen::MatrixXd> matrix;                              // square matrix of size 2 modes + 1; none: unit matrix
-    std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;  // adds vector * d(begin of this signal piece)/dp to d
+    std::size_t parts = 0;                  // number of parts (of all steps) before the event
+    std::optional<Eigen::MatrixXd> matrix;  // square matrix of size 2 modes + 1; unit matrix if none
+    // Each pair adds its vector times the derivative dt/dp of the time t at which the signal piece begins.
+    std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;
     Eigen::MatrixXd by_device = {};  // derivatives by device parameters that change the switch, one column each, or none
   };
 
@@ -165,27 +168,29 @@ class LinearizedClosing {
   Index n_, size_;  // number of modes; number of unknowns, 2 modes
   Index stride_;    // size_ rounded up to whole SIMD vectors
   SwitchSlopes* by_device_;
-  // Number of drives, which is also the index of the residual interference among the inputs; number of device parameters that
-  // change the switch; number of inputs.
+  // Number of drives, and so the index of the residual interference, which follows the voltages among the inputs; number of
+  // device parameters that change the switch; number of all inputs.
   Index dent_, moving_, inputs_;
   double fastest_;  // angular frequency of the fastest mode [rad/s]
   Switch::Workspace work_;
   int refinement_;
-  std::vector<std::vector<std::size_t>> pieces_;  // index of each drive's signal piece, a set per breakpoint
+  // Index of the signal piece in use for each drive; a new entry for every breakpoint.
+  std::vector<std::vector<std::size_t>> pieces_;
   std::vector<Arc> arcs_;
   std::vector<PhaseEvent> passages_;
 
   std::size_t steps_ = 0;         // number of linearised steps of the recorded motion
   std::size_t next_arc_ = 0;      // index in arcs_ of the first arc after the linearised steps
   std::size_t next_passage_ = 0;  // index of the next change of the contact law in the recorded motion
-  std::size_t on_ = 0;            // index in pieces_ of the signal pieces in use
+  std::size_t on_ = 0;            // index in pieces_ of the signal pieces in use at the end of the linearised steps
   std::vector<double> volts_;
   std::vector<Part> parts_;
   std::vector<double> numbers_;  // matrices of Magnus' series, and derivatives by the inputs, for all parts
   std::vector<Jump> jumps_;
   Eigen::MatrixXd rest_;  // derivatives of the rest position at the start by device parameters, one column each
   Node from_, middle_, to_;
-  bool goes_on_ = false;  // true when from_ has the derivatives at the begin of the next part
+  // True when from_ already has the derivatives at the begin of the next part: no jump comes before it.
+  bool goes_on_ = false;
 };
 
 }  // namespace softland

@@ -28,7 +28,8 @@ void add_compensated(Value&& value, Left&& left, const Gain& gain) {
   }
 }
 
-// Computes, for a row vector w and a matrix x, w (exp(x) - 1) and w phi_j(x) = sum over k of w x^k / (k + j)!, j = 1, 2, 3.
+// Computes what carries a row vector of weights w back over a part of a step, x being the matrix of Magnus' series: w (exp(x) -
+// 1) and, for the inputs, w phi_j(x) = sum over k of w x^k / (k + j)!, j = 1, 2, 3.
 struct RowSeries {
   using Row = Eigen::Array<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, most_unknowns>;
   Row gain, phi1, phi2, phi3;
@@ -59,8 +60,9 @@ struct RowSeries {
   }
 };
 
-// Advances the columns d of the derivatives by d' = x d + u1 + u2 s + u3 s^2 from s = 0 to 1. Rows are padded to whole SIMD
-// vectors. The vectors u are stored without their upper half, the rates of the coordinates, which is 0.
+// Advances derivatives d, one column per parameter, over a part of a step by d' = x d + u1 + u2 s + u3 s^2 from s = 0 to 1. x
+// is the matrix of Magnus' series; the vectors u are the contribution of the inputs. Their upper half, the rates of the
+// coordinates, is 0 and not stored. Rows are padded to whole SIMD vectors.
 using Columns = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 struct ColumnSeries {
   Columns gain, term, next;
@@ -97,7 +99,8 @@ VectorXd LinearizedClosing::scaled(const FigureSlope::Weights& weights) const {
   return all;
 }
 
-// Adds the derivatives of figures of merit by the beginnings of signal pieces, and by the device at fixed q and v.
+// Adds to the gradient the direct derivatives of figures of merit: by the breakpoints at which they are measured, and by the
+// device at fixed q and v.
 void LinearizedClosing::add_moved(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes, MatrixXd& gradient) const {
   for (std::size_t f = 0; f < figures.size(); ++f) {
     for (const FigureSlope::Moved& m : figures[f].moved) {
@@ -108,8 +111,9 @@ void LinearizedClosing::add_moved(const std::vector<FigureSlope>& figures, const
   }
 }
 
-// Calls add(input, parameter, a, b, c) for every input of the linearised equations (such as a voltage), with its derivatives by
-// a parameter at begin, middle and end of a part of a step.
+// Calls add(input, parameter, a, b, c) for every input of the linearised equations (such as a voltage) and every parameter on
+// which it depends. The arguments a, b, c are the derivatives of the input by the parameter at begin, middle and end of a part
+// of a step.
 template <class Add>
 void LinearizedClosing::for_inputs(const Part& part, const SignalSlopes& slopes, Add&& add) const {
   const std::vector<std::size_t>& on = pieces(arcs_[part.arc]);
@@ -122,13 +126,15 @@ void LinearizedClosing::for_inputs(const Part& part, const SignalSlopes& slopes,
   for (Index j = 0; j < moving_; ++j) add(dent_ + 1 + j, column(j), 1.0, 1.0, 1.0);
 }
 
-// Integrates the contribution of the inputs exactly for inputs that are parabolas in time within a part of a step.
+// Carries the weights of the figures back from the end of the motion to its begin, part by part. The contribution of an input
+// is integrated exactly if it is a parabola in time within a part.
 MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) {
   linearize_for(figures);
   const auto count = static_cast<Index>(figures.size());
   MatrixXd gradient = MatrixXd::Zero(count, static_cast<Index>(slopes.parameters()));
   MatrixXd weights = MatrixXd::Zero(count, size_ + 1), left = weights;
-  std::vector<std::pair<std::size_t, std::pair<Index, VectorXd>>> given;  // arc; row of the figure in the gradient, its weights
+  // Index of the arc, row of the figure in the gradient, and its weights.
+  std::vector<std::pair<std::size_t, std::pair<Index, VectorXd>>> given;
   for (std::size_t f = 0; f < figures.size(); ++f) {
     for (const FigureSlope::Weights& w : figures[f].weights) given.push_back({w.arc, {static_cast<Index>(f), scaled(w)}});
   }

@@ -20,8 +20,8 @@ class ModalBasis {
   /// Factors from the normalised mode shapes and frequencies to those of the structure.
   struct Scales {
     double length = 0;     ///< length of the structure [m]
-    double shape = 0;      ///< mode shape over normalised mode shape [kg^(-1/2)]
-    double frequency = 0;  ///< angular frequency over normalised angular frequency [rad/s]
+    double shape = 0;      ///< ratio of a mode shape to the normalised mode shape [kg^(-1/2)]
+    double frequency = 0;  ///< ratio of an angular frequency to the normalised one [rad/s]
   };
   ModalBasis() = default;
   /// `piezo` has the modal forces per volt of the piezo layer of a beam with sections or layers; none for a uniform beam, for
@@ -55,8 +55,8 @@ class ModalBasis {
   /// Returns the static deflection of the contact point per volt on the piezo, without any other force and for small
   /// deflections [m/V]; 0 without a layer. The deflection is positive towards the electrodes.
   [[nodiscard]] double piezo_deflection() const { return contact_shape_.cwiseQuotient(squares_).dot(piezo_shape_); }
-  /// Returns the charge that the deflection of the beam puts on the piezo's electrodes [C]. This charge is without that of the
-  /// layer's capacitance (piezo_layer.h).
+  /// Returns the charge that the deflection of the beam puts on the piezo's electrodes by the piezoelectric effect [C]; the
+  /// charge of the layer's capacitance (piezo_layer.h) is not included.
   [[nodiscard]] double piezo_charge(const double* q) const { return at(q).dot(piezo_shape_); }
   /// Returns the kinetic energy of the modes [J].
   [[nodiscard]] double kinetic_energy(const double* v) const { return at(v).squaredNorm() / 2; }
@@ -77,7 +77,8 @@ class ModalBasis {
  private:
   std::vector<Eigen::VectorXd> further_contact_shapes_;
   Eigen::VectorXd frequencies_, squares_, contact_shape_, pad_slope_, piezo_shape_;
-  // Squared frequency, damping rate, shape at the contact, piezo force of each mode, padded to whole SIMD vectors.
+  // Squared frequency, damping rate, mode shape at the contact point and piezo force per volt of each mode, padded to whole
+  // SIMD vectors.
   std::vector<double> stiffness_lanes_, friction_lanes_, contact_lanes_, piezo_lanes_;
   double in_contact_period_ = 0;
 };

@@ -19,7 +19,8 @@ std::optional<Eigen::VectorXd> Switch::open_equilibrium(std::span<const double> 
 }
 
 // Finds the open equilibrium with one run of Newton's method if possible, otherwise with a run for each increment of the load.
-// Increments are necessary because a beam that stretches is far stiffer when bent than Newton's first step predicts.
+// Increments are necessary because a bent beam that stretches is far stiffer than the straight beam, from which Newton's first
+// step extrapolates.
 std::optional<Eigen::VectorXd> Switch::loaded_equilibrium(std::span<const double> values) const {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(modes());
   if (std::optional<Eigen::VectorXd> found = equilibrium_from(q, values)) return found;
@@ -38,8 +39,8 @@ std::optional<Eigen::VectorXd> Switch::loaded_equilibrium(std::span<const double
 }
 
 // Finds the open equilibrium by Newton's method from the modal coordinates q. The load grows ever faster as the gap closes, so
-// the iterates stay on the stable side, before the equilibrium. If the tangent at an iterate is not stable, no stable
-// equilibrium exists.
+// Newton's steps fall short, unless stretching dominates: every iterate deflects less than the equilibrium. If the tangent
+// stiffness at an iterate is not positive definite, no stable equilibrium exists.
 std::optional<Eigen::VectorXd> Switch::equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const {
   constexpr int most_iterations = 200;  // near the pull-in voltage an iteration halves the distance to the equilibrium at best
   constexpr double rounding = 1e-14;    // change of the deflection that counts as rounding, as a share of the gap
@@ -51,7 +52,7 @@ std::optional<Eigen::VectorXd> Switch::equilibrium_from(Eigen::VectorXd q, std::
     accelerations(q.data(), zero.data(), values, false, work, force.data());
     jacobian(q.data(), zero.data(), values, false, work, by_q, by_v);
     if (!(smallest_gap(work) > gap_floor())) return std::nullopt;
-    // Each equation is in units of its mode's stiffness.
+    // Each equation is divided by its mode's stiffness: the stiffnesses differ by decades.
     const std::optional<Eigen::VectorXd> moved =
         solve_definite(-(basis_.angular_frequencies().cwiseInverse().asDiagonal() * by_q *
                          basis_.angular_frequencies().cwiseInverse().asDiagonal()),

@@ -5,7 +5,8 @@
 
 namespace softland {
 
-/// The contact's side of the moving part, towards which deflections are positive (near), the other side (far), or both.
+/// Side of the moving part: the side of the first contact, towards which deflections are positive (near), the other side (far),
+/// or both sides.
 enum class Side { near, far, both };
 inline constexpr auto sides = std::to_array<Named<Side>>({{Side::near, "near"}, {Side::far, "far"}, {Side::both, "both"}});
 static_assert(is_complete<sides>());
@@ -14,7 +15,8 @@ static_assert(is_complete<sides>());
 /// length.
 struct Place {
   constexpr Place() = default;
-  constexpr Place(double distance) : value(distance) {}  // not explicit: a plain number is a distance from the clamped end
+  // Not explicit: a plain number stands for a distance from the clamped end [m].
+  constexpr Place(double distance) : value(distance) {}
   [[nodiscard]] static constexpr Place share(double of_length) {
     Place place(of_length);
     place.is_share = true;

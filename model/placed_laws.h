@@ -21,10 +21,10 @@ struct PointRange {
 /// A range of quadrature points under a structure of one width and thickness, and with one pattern of holes.
 struct EvenRange {
   PointRange points;
-  double width;      ///< width of the structure without its holes [m]
+  double width;      ///< width of the structure after holes are subtracted: the width times the share of area that remains [m]
   double thickness;  ///< thickness of the structure [m]
   Holes holes = {};
-  double full_width = width;  ///< width of the structure with its holes [m]
+  double full_width = width;  ///< width of the structure between its edges, not reduced by holes [m]
 };
 
 /// Returns the range of quadrature points between two positions along the structure [m].
@@ -34,16 +34,16 @@ struct EvenRange {
 [[nodiscard]] std::vector<EvenRange> even_ranges(const Structure& structure, const Eigen::ArrayXd& positions, double begin,
                                                  double end);
 
-/// Returns a force law that acts on a range of quadrature points, hidden behind DistributedLaw; below the gap `floor` [m] it is
-/// continued by its tangent.
+/// Returns a force law that acts on a range of quadrature points, as an object of the common base class DistributedLaw. Below
+/// the gap `floor` [m] the law is continued by its tangent.
 template <class Law>
 std::shared_ptr<const DistributedLaw> erased(Law law, PointRange range, double floor) {
   return std::make_shared<const DistributedLawOf<Law>>(law, range.begin, range.end, floor);
 }
-/// Combines the force laws of all pads of an electrode in one law.
+/// Combines the force laws of several pads, such as those of one electrode, in one law.
 [[nodiscard]] std::shared_ptr<const DistributedLaw> one_law(std::vector<std::shared_ptr<const DistributedLaw>> pads);
 
-/// Calls `make` with the force law of an electrode that has this fringing field.
+/// Returns make(law), law being the electrostatic force law of an electrode with this fringing field.
 template <class Make>
 std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const EvenRange& range, Make&& make) {
   return std::visit([&](const auto& law) { return make(ElectrostaticForce<std::decay_t<decltype(law)>>{law}); },

@@ -56,7 +56,7 @@ class PointQuadrature {
     const auto points = static_cast<std::size_t>(shapes_.rows());
     const double* shapes = weighted_lanes_.data() + first * points;
     const double* load = loads.data();
-    constexpr std::size_t chains = 4;  // number of independent partial sums, which run in parallel in the processor
+    constexpr std::size_t chains = 4;  // number of independent partial sums, which the processor adds in parallel
     Lane sum[chains] = {Lane::Zero(), Lane::Zero(), Lane::Zero(), Lane::Zero()};
     for (std::size_t p = 0; p < points; p += chains) {
       for (std::size_t k = 0; k < chains; ++k) sum[k] += load[p + k] * Eigen::Map<const Lane>(shapes + (p + k) * lanes);
@@ -71,7 +71,8 @@ class PointQuadrature {
   using Block = Lane;
 
  private:
-  /// Adds the contribution of modes from `first` on to the beam's gaps and velocities; returns the smallest gap so far.
+  /// Adds the contribution of `Modes` modes, from mode `first` on, to the gaps and velocities of the beam at all points.
+  /// Returns the smallest gap after this addition.
   template <int Modes>
   [[gnu::always_inline]] double add_modes(Eigen::Index first, const double* q, const double* v, GapField& field) const {
     const Eigen::Index points = shapes_.rows();

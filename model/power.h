@@ -22,17 +22,20 @@ template <class S>
 requires std::same_as<S, double> || LaneOfNumbers<S>
 [[nodiscard, gnu::always_inline]] inline S power(const S& x, double y) {
   constexpr double ln2 = 0.69314718055994530942;
-  // The bits of 2^52 + 2^51. Adding this number to another puts the rounded other number, negative or not, into the low bits.
+  // 2^52 + 2^51: adding this number to a number of moderate size rounds the latter and leaves the rounded value in the low bits
+  // of the sum, also for negative values.
   static constexpr double shift = 6755399441055744.0;
   constexpr auto one = std::bit_cast<std::int64_t>(1.0), low_root = std::bit_cast<std::int64_t>(0.70710678118654752440);
   const S m = one_by_one(x, [](double number) {
-    // With x = 2^e m, the integer `above` holds e in its exponent bits, and the excess of m over sqrt(1/2) in the other bits.
+    // With x = 2^e m: after the bits of sqrt(1/2) are subtracted, the exponent bits hold e, and the other bits how much m
+    // exceeds sqrt(1/2).
     const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
     return std::bit_cast<double>((above & 0xFFFFFFFFFFFFF) + low_root);
   });
   const S e = one_by_one(x, [](double number) {
     const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
-    // Vector units cannot shift signed 64-bit numbers: a bias, subtracted afterwards, makes the number positive.
+    // Vector units cannot shift signed 64-bit numbers to the right. A bias of 1024 makes e positive before the shift, and is
+    // subtracted after it.
     const auto biased = static_cast<std::uint64_t>(above + (std::int64_t{1024} << 52)) >> 52;
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(shift) + biased) - (shift + 1024);
   });
@@ -53,12 +56,13 @@ requires std::same_as<S, double> || LaneOfNumbers<S>
 ///
 ///   w <- w (1 - e)^(-1/4),   e = 1 - h w^4,   the power by its series in e
 ///
-/// The first guess of w is good to 4 %: the exponent divided by -4. The fifth order leaves an error of 2e-6, the second order
-/// then 1e-17.
+/// The first guess of w divides the exponent of h by -4; its error is up to 4 %. A step with the series to fifth order reduces
+/// the error to 2e-6, and a step with the series to second order then to 1e-17.
 template <class S>
 requires std::same_as<S, double> || LaneOfNumbers<S>
 [[nodiscard, gnu::always_inline]] inline S inverse_fourth_root(const S& h) {
-  // Five quarters of the bits of 1.0, less an amount that minimises the error of the first guess of h^(-1/4).
+  // Five quarters of the bits of 1.0, which make the guess right for h = 1, less an amount that minimises the largest error of
+  // the guess.
   constexpr std::uint64_t offset = 0x4FEB000000000000;
   S w = one_by_one(h, [](double x) { return std::bit_cast<double>(offset - (std::bit_cast<std::uint64_t>(x) >> 2)); });
   S square = w * w, e = 1.0 - h * (square * square);

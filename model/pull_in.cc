@@ -49,7 +49,8 @@ class StepTrial {
                            .stop = stop};
     int step = 0;
     options.observer = [&](double time, const double* q, const double* v) {
-      // Check every eighth step: a more frequent check of the energy costs more than it saves.
+      // Compare the energies at every eighth step only: computing the energy more often costs more than an earlier end of the
+      // run saves.
       if (++step % 8 != 0) return false;
       tell(time / options.duration);
       return model_.contact_deflection(q) < barrier.deflection && model_.basis().kinetic_energy(v) +
@@ -117,8 +118,8 @@ StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
     const double s = place(k), strength = branch(s);
     if (!std::isfinite(strength)) return {.status = Status::numerical_failure};
     if (strength <= best) {
-      // The deflection is in units of the gap, because the tolerance of Brent's method is partly absolute. The maximum is flat,
-      // so the tolerance of the deflection is far tighter than the voltage needs.
+      // The deflection is in units of the gap, because the tolerance of Brent's method is partly absolute. The maximum of
+      // the strength is flat, so the error of the deflection hardly changes the voltage.
       const auto [at, value] = boost::math::tools::brent_find_minima([&](double x) { return -branch(x * end); },
                                                                      std::max(1e-6, place(k - 2) / end), s / end, 30);
       // A drive that pulls away from the contact has no pull-in: its strength falls along its branch of equilibria from the
@@ -170,7 +171,7 @@ ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
   follow_to_plane(branch, plane);
   if (model.rigid_contact() != nullptr) return released(branch(plane), plane);
   if (model.contact_reach() > 0) {
-    // Number of depths at which a lower second minimum of the voltage is sought: adhesion at larger depth may cause one.
+    // Number of depths at which the least voltage is sought first: adhesion may cause a second, lower minimum at larger depth.
     constexpr int looks = 256;
     const double step = largest_interference(model.device().contacts.front().model) / looks;
     double best = branch(plane), at = 0;
@@ -199,13 +200,13 @@ std::optional<StablePath> stable_path(const Switch& model, std::size_t drive, Bi
   EquilibriumBranch branch(model, drive, bias);
   const double begin = model.contact_deflection(rest->data()), end = model.contact_gap();
   StablePath path{.deflections = {begin}, .values = {0.0}};
-  double direction = 0;  // value at the first step; its sign is the direction in which all values must change
+  double direction = 0;  // drive's value at the first step; its sign tells whether the values rise or fall along the path
   for (int k = 1; k <= steps; ++k) {
     const double s = begin + (end - begin) * k / steps, strength = branch(s);
     if (!std::isfinite(strength) || (model.drive_kind(drive) == DriveKind::electrode && !(strength > 0))) return std::nullopt;
     const double value = model.value_of_strength(drive, strength);
     if (k == 1) direction = value;
-    // At pull-in the branch of equilibria turns back, and no stable path goes on.
+    // At pull-in the value of the drive turns back along the branch of equilibria: beyond it no equilibrium is stable.
     if (!((value - path.values.back()) * direction > 0)) return std::nullopt;
     values[drive] = value;
     if (!(open_tangent_eigenvalue(model, branch.q(), values) > 0)) return std::nullopt;

@@ -113,8 +113,8 @@ struct ClosedEquilibrium {
 [[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium_near(const Switch& model, std::span<const double> volts,
                                                                        const ClosedEquilibrium& near);
 
-/// Returns true when the number of modes suffices to decide whether a closed equilibrium is stable: a beam clamped at both ends
-/// leaves the equilibrium by a motion that the first mode does not have.
+/// Returns true when the modes of the switch suffice to decide whether a closed equilibrium is stable. One mode of a beam
+/// clamped at both ends does not: such a beam leaves the equilibrium by a motion in other modes.
 [[nodiscard]] bool judges_stability(const Switch& model);
 
 /// Returns true when the closed equilibrium exists and is stable, as far as the modes of the switch show this.
@@ -142,9 +142,9 @@ inline constexpr double dynamic_pull_in_precision = 1e-7;
 
 /// Dynamic pull-in voltage Vdp [V]: the smallest constant voltage step, from rest under the bias of the other drives, under
 /// which the contact point reaches the contact plane within 100 periods of the first mode, whether or not the switch stays
-/// closed, to `precision`. Vdp is at most the static pull-in voltage, at which the switch closes whatever its damping. Vdp is
-/// NaN with a status when static pull-in under the same bias fails, or `progress` asks to stop. Throws InvalidInput as
-/// static_pull_in() does.
+/// closed. Vdp has the relative error `precision`. It is at most the static pull-in voltage, at which the switch closes with
+/// any damping. Vdp is NaN with a status when static pull-in under the same bias fails, or `progress` asks to stop. Throws
+/// InvalidInput as static_pull_in() does.
 struct DynamicPullIn {
   Status status = Status::not_run;
   /// Dynamic pull-in voltage [V]; for the dispersion force its factor minus 1.

@@ -13,8 +13,8 @@ using namespace statics;
 
 namespace {
 
-// Step and range of the search for the collapse voltage, pull_through_voltage(), as factors. The functions of this file search
-// for the acting voltage, V - V0 for an electrode whose dielectric is charged.
+// Factor between two voltages of the search for the collapse voltage, pull_through_voltage(), and largest factor between its
+// first and its last voltage. The functions in this namespace count the voltage of the drive from its neutral voltage V0.
 constexpr double pull_through_factor = 1.05, pull_through_range = 10;
 
 // Returns the collapse voltage, found upwards or downwards from `start`, with an independent search for the closed equilibrium
@@ -74,8 +74,8 @@ double pull_through_of_narrow_window(const Switch& model, std::size_t drive, std
   return high;
 }
 
-// Searches the collapse voltage upwards by Newton's method from `near`, an equilibrium near that at `start`; returns none
-// without convergence.
+// Searches the collapse voltage upwards from `start` by Newton's method; `near` is a closed equilibrium at `start` or a similar
+// voltage. Returns none when the method does not converge.
 std::optional<double> pull_through_from(const Switch& model, std::size_t drive, std::vector<double> levels, double start,
                                         const ClosedEquilibrium& near, double precision) {
   std::optional<ClosedEquilibrium> last = near;
@@ -104,7 +104,7 @@ std::optional<double> pull_through_from(const Switch& model, std::size_t drive, 
 
 double acting_pull_through(const Switch& model, std::size_t drive, std::span<const double> volts, double precision) {
   const double neutral = model.neutral_voltage(drive);
-  // No equilibrium keeps the switch closed below its release voltage.
+  // The search must not begin below the release voltage, where no closed equilibrium exists.
   const double release = release_voltage(model, drive, volts) - neutral, given = std::abs(volts[drive] - neutral);
   const double start = std::fmax(given, pull_through_factor * release);
   if (!(start > 0)) return no_equilibrium;
@@ -114,7 +114,7 @@ double acting_pull_through(const Switch& model, std::size_t drive, std::span<con
   const auto found =
       keeps_closed(model, closed) ? pull_through_from(model, drive, levels, start, *closed, precision) : std::nullopt;
   if (found) return *found;
-  const bool is_above = start > given;  // the search begins above the given voltage, near the release voltage
+  const bool is_above = start > given;  // true when the search begins above the given voltage, near the release voltage
   if (is_above && !keeps_closed(model, closed)) {
     const double narrow = pull_through_of_narrow_window(model, drive, levels, release, precision);
     if (std::isfinite(narrow)) return narrow;
@@ -144,7 +144,7 @@ double pull_through_voltage_near(const Switch& model, std::size_t drive, std::sp
   if (lands_on_wall(model, drive)) return no_equilibrium;
   const double neutral = model.neutral_voltage(drive);
   const double given = std::abs(volts[drive] - neutral);
-  // The search multiplies the given voltage by factors, so it cannot start at 0.
+  // The search multiplies its first voltage by factors, so it cannot begin at 0.
   if (given == 0) return pull_through_voltage(model, drive, volts, precision);
   const auto found = pull_through_from(model, drive, {volts.begin(), volts.end()}, given, near, precision);
   return found ? neutral + *found : pull_through_voltage(model, drive, volts, precision);

@@ -30,7 +30,7 @@ struct ElementProducts {
       ElementProducts p;
       p.values.setZero();
       p.slopes.setZero();
-      // Gauss rule that is exact for squares of polynomials of degree 9.
+      // Gauss rule that is exact for products of two shape functions, which have the degree 9.
       const GaussRule rule = gauss_rule(element_functions + 2);
       for (std::size_t g = 0; g < rule.points.size(); ++g) {
         const Row value = row(rule.points[g], 0), slope = row(rule.points[g], 1);
@@ -158,8 +158,9 @@ void Receptance::load(double x) {
   }
 }
 
-// Adds the stiffness and force of the beam beyond an element's right end to the element's motions. The force acts on deflection
-// and slope of this end; the stiffness has the terms deflection-deflection, deflection-slope and slope-slope.
+// Adds to the quadratic form and load of an element those of the beam beyond its right end. The beam there acts like a spring,
+// `stiffness` (deflection-deflection, deflection-slope, slope-slope), and a load, `force`, on the deflection and slope of this
+// end.
 void Receptance::add_beyond(Stage& stage, const ElementKind& kind, const Lane* stiffness, const Lane* force) const {
   const double deflection[kept] = {1, 2, kind.reach * first_at_end, kind.reach * second_at_end};
   const double slope[kept] = {0, 1 / kind.half, kind.reach * first_turn / kind.half, 0};
@@ -177,7 +178,8 @@ void Receptance::fix_end(Stage& stage, const ElementKind& kind) const {
   const double first = -1 / (kind.reach * first_turn), second = -1 / (kind.reach * second_at_end);
   auto& f = stage.form;
   auto& p = stage.load;
-  // Substitute the factors of the first two shape functions, s_0 = first * rotation and s_1 = second * (deflection + rotation).
+  // Substitute the factors s_0, s_1 of the first two shape functions. They hold the right end in place: s_0 = first * rotation
+  // and s_1 = second * (deflection + rotation), deflection and rotation being those of the rigid element.
   const Lane f00 = f[0][0] + 2 * second * f[3][0] + second * second * f[3][3];
   const Lane f10 = f[1][0] + first * f[2][0] + second * (f[3][0] + f[3][1] + first * f[3][2]) + second * second * f[3][3];
   const Lane f11 = f[1][1] + 2 * first * f[2][1] + 2 * second * f[3][1] + first * first * f[2][2] + 2 * first * second * f[3][2] +
@@ -201,7 +203,7 @@ void Receptance::sweep_to_clamp(Answer& answer) {
       fix_end(stage, kind);
     } else {
       add_beyond(stage, kind, stiffness, force);
-      // Eliminate the first two shape functions together: one of them alone may have a zero pivot at a frequency that is far
+      // Eliminate the first two shape functions together: the pivot of one of them alone may be zero at a frequency that is far
       // from every pole of the receptance.
       auto& f = stage.form;
       const Lane determinant = f[2][2] * f[3][3] - f[3][2].square(), over = determinant.inverse();

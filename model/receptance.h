@@ -7,8 +7,8 @@
 // element by element from the far end to the clamp at x = 0, as in a linear-quadratic control problem. The part beyond a node
 // acts as a stiffness of two by two at the node, so that short elements cost no digits. The time is proportional to the number
 // of elements. There are as many negative pivots as natural frequencies below lambda (Sylvester's law of inertia; Wittrick &
-// Williams, Q. J. Mech. Appl. Math. 24 (1971) 263). When the motion is nearly a mode, a over its derivative is the step to the
-// Rayleigh quotient.
+// Williams, Q. J. Mech. Appl. Math. 24 (1971) 263). Near a pole the quotient of a and its derivative by lambda is the step from
+// lambda to the Rayleigh quotient of the motion.
 #pragma once
 
 #include <Eigen/Core>
@@ -51,7 +51,7 @@ class Receptance {
     Lane deflection;   ///< receptance: deflection by a unit force
     Lane inertia;      ///< derivative of the receptance by the squared frequency, the integral of mass times squared deflection
     Lane below;        ///< number of natural frequencies of the beam below lambda
-    Lane least_pivot;  ///< smallest pivot except the last, which vanishes at a pole: small pivots magnify rounding
+    Lane least_pivot;  ///< smallest pivot except the last, which is 0 at a pole: small pivots magnify rounding
   };
   /// Returns the receptance of the beam at the position x in (0, 1], for one squared frequency per SIMD lane.
   [[nodiscard]] Answer at(const Lane& lambda, double x);
@@ -67,7 +67,7 @@ class Receptance {
   // the motions from index `kept` on are eliminated.
   struct ElementKind {
     double half = 0, rigidity = 0, mass = 0;
-    double reach = 0;  // deflection of a shape function of unit energy, over that of the dimensionless function
+    double reach = 0;  // factor that scales a dimensionless shape function to unit bending energy
     Lane form[size][size];
     Lane inverse[size];          // inverse pivots of the element's elimination
     Lane negative, least_pivot;  // number of negative pivots, and smallest pivot, in this elimination

@@ -21,7 +21,7 @@ class RecordedMotion final : public ClosingObserver {
     double time = 0;  ///< time of this state of the motion [s]
     const double *q, *v, *accelerations;
   };
-  /// A change of the contact law's branch before the smooth arc with the number `arc`.
+  /// A change of the contact law from one of its curves to another; `arc` is the index of the smooth arc that follows.
   struct PhaseEvent {
     std::size_t arc = 0;
     double time = 0;  ///< time of the change of the contact law [s]
@@ -42,7 +42,8 @@ class RecordedMotion final : public ClosingObserver {
   void step(const Knot& begin, const Knot& end, const ContactState& contact) override {
     arcs_.push_back({begin.time, end.time, contact});
     for (const Knot* knot : {&begin, &end}) {
-      // Number of modes; state has q, v, film; rates has accelerations, film rates.
+      // The state has q, v and film pressures, the rates have accelerations and film rates: the difference of the sizes is the
+      // number of modes.
       modes_ = knot->state.size() - knot->rates.size();
       numbers_.insert(numbers_.end(), knot->state.data(), knot->state.data() + 2 * modes_);
       numbers_.insert(numbers_.end(), knot->rates.data(), knot->rates.data() + modes_);
@@ -63,7 +64,7 @@ class RecordedMotion final : public ClosingObserver {
 
   ClosingObserver* next_ = nullptr;
   std::vector<Arc> arcs_;
-  std::vector<double> numbers_;  // modal coordinates, velocities, accelerations at the start of each arc, then at its end
+  std::vector<double> numbers_;  // modal coordinates, velocities and accelerations at begin and end of each arc
   std::size_t modes_ = 0;
   std::vector<PhaseEvent> passages_;
 };

@@ -63,7 +63,8 @@ struct SampledModes {
   Eigen::MatrixXd shapes;                        // mode shapes at the quadrature points, points x modes
   Eigen::VectorXd contact_shape, contact_slope, piezo_begin_slope, piezo_end_slope;
   std::vector<Eigen::VectorXd> further_contact_shapes;
-  double pinned_inverse_square = 0;  // inverse squared first frequency of the normalised beam that is also held at its contact
+  // 1 / omega^2 of the first mode of the normalised beam when it is also held at its contact: gives the in-contact period.
+  double pinned_inverse_square = 0;
 
   template <class Modes>
   SampledModes(const Modes& normalised, double length, PanelPlaces at, const SampledModes* near) : places(std::move(at)) {
@@ -71,7 +72,7 @@ struct SampledModes {
     std::vector<double> x, w;
     for (auto corner = places.corners.begin(); std::next(corner) != places.corners.end(); ++corner) {
       const double begin = *corner, panel = *std::next(corner) - begin;
-      if (panel < 1e-9 * end) continue;  // the two ends of the panel are one position up to rounding
+      if (panel < 1e-9 * end) continue;  // a panel without length, whose ends differ by rounding
       const int count = std::max(places.fewest_points, static_cast<int>(std::ceil(panel / end * places.points_per_length)));
       const GaussRule* known = near && rules.size() < near->rules.size() ? &near->rules[rules.size()] : nullptr;
       rules.push_back(known && static_cast<int>(known->points.size()) == count ? *known : gauss_rule(count));

@@ -17,7 +17,7 @@ constexpr double no_slope = std::numeric_limits<double>::quiet_NaN();
 
 // Derivatives of the static modal accelerations at an equilibrium.
 struct Tangent {
-  MatrixXd by_q, by_strength;  // derivatives by modal coordinates [rad^2/s^2]; modal forces of the drives at unit strength
+  MatrixXd by_q, by_strength;  // derivatives by modal coordinates [rad^2/s^2], and by the strengths of the drives
   VectorXd scale;              // 1 / omega^2 of each mode, omega its angular frequency
 
   Tangent(const Switch& model, const VectorXd& q, std::span<const double> volts, const ContactState& contact)
@@ -78,7 +78,7 @@ std::vector<double> held_slopes(const Switch& model, SwitchSlopes& by, std::size
   return slopes;
 }
 
-// The open equilibrium of a switch: modal coordinates, and the state of the contact.
+// The open equilibrium of a switch: modal coordinates, and the state of the contact law, which may act above the contact plane.
 struct Rest {
   VectorXd q;
   ContactState contact;
@@ -116,9 +116,10 @@ VectorXd motion_by_voltage(const Switch& model, const Tangent& tangent, std::siz
   return -tangent.solved(by_value * force);
 }
 
-// Returns a step along a direction of the modal coordinates that is small against the contact gap but far above rounding.
+// Returns a step for central differences along a direction of the modal coordinates: small against the contact gap, but far
+// above rounding.
 double small_step(const Switch& model, const VectorXd& direction) {
-  constexpr double share = 1e-5;  // size of the step, as a share of the contact gap
+  constexpr double share = 1e-5;  // deflection of the contact point by the step, as a share of the contact gap
   const double moved = std::abs(model.contact_deflection(direction.data()));
   return moved > 0 ? share * model.contact_gap() / moved : 1;
 }

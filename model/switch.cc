@@ -102,7 +102,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
       s.kind);
   const Eigen::Index n = quadrature_.points();
 
-  // Makes the force law of an electrode or film on the far side, whose gap at rest is `gap`.
+  // Returns the force law of an electrode or gas film on the far side, at the distance `gap` from the moving part at rest.
   const auto on_far_side = [&](const auto& law, double gap) {
     const double both_gaps = device_.gap.electrode + gap, floor = gap / 100;
     most_gap_ = std::min(most_gap_, both_gaps - floor);
@@ -147,7 +147,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     const LocalSection contact = section_at(s, device_.contact_position());
     const double width = contact.width_at(device_.contact_position());
     gas_ = std::make_shared<const GasLaw>(gas_law(*device_.gas, width, contact.thickness, unit_quality));
-    // Calls `make` with the law of the gas film over one range of quadrature points.
+    // Returns make(law), law being the law of the gas film over one range of quadrature points.
     const auto film_on = [&](const EvenRange& even, auto&& make) {
       const GasLaw law = gas_law(*device_.gas, even.full_width, even.thickness, unit_quality);
       const auto* const strip = even.holes.exist() ? std::get_if<StripSqueezeFilm>(&law) : nullptr;
@@ -226,8 +226,8 @@ GapField Switch::still_field(const double* q) const {
   return field;
 }
 
-// Returns the interference at which the contact carries a force, by bisection, since contact forces grow with the interference.
-// A contact along the pad has the tilt that the same force at the contact point causes.
+// Returns the interference at which the contact force has this value, by bisection, since contact forces grow with the
+// interference. For a contact along the pad, the beam has the tilt that a force at the contact point causes.
 double Switch::penetration_under(double force) const {
   const double plane = contact_gap_;
   const Eigen::VectorXd pushed = basis_.contact_shape().cwiseQuotient(basis_.squares()), still = Eigen::VectorXd::Zero(modes());
@@ -272,7 +272,7 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
   }
   const double piezo = device_.piezo ? volts.back() : 0;
   for (std::size_t i = 0; i < n; i += lanes) {
-    // Add the terms that need the distributed load last, so that the other terms do not wait for the load.
+    // Compute the terms without the distributed load first: the processor can then work on them while the load is not ready.
     const Lane own = basis_.forces(i, n, q, v, piezo, push);
     store_lane(own + quadrature_.projected(work.load, i), result, i, n);
   }
@@ -349,7 +349,7 @@ void Switch::add_film_derivatives(const double* state, const Workspace& work, Ei
     const Eigen::Index at = 2 * n + nodes * s;
     const ReynoldsFilm::Derivatives d = film_->derivatives(work.field.gap[s], work.field.velocity[s], film);
     derivatives.block(n, at, n, nodes) += quadrature_.weighted_shapes().row(s).transpose() * film_->load_by_film().transpose();
-    // Minus sign: the gap shrinks as the beam deflects.
+    // Minus sign: a positive deflection reduces the gap.
     derivatives.block(at, 0, nodes, n) -= d.by_gap * quadrature_.shapes().row(s);
     derivatives.block(at, n, nodes, n) += d.by_velocity * quadrature_.shapes().row(s);
     derivatives.block(at, at, nodes, nodes) += d.by_film;

@@ -52,10 +52,10 @@ struct SwitchOptions {
 };
 
 /// The states of all contact laws of a switch: either one state for each contact, or a state for the first contact alone. Every
-/// other contact then has the state of first loading while it is within the reach of its law.
+/// other contact is then in first loading, and acts within contact_reach() of its plane and beyond the plane.
 struct ContactStates {
-  ContactStates(const ContactState& first_one) : first(first_one) {}  // NOLINT: implicit, as most switches have one contact
-  ContactStates(std::same_as<bool> auto acts) : first(acts) {}  // NOLINT: implicit; most laws depend only on whether they act
+  ContactStates(const ContactState& first_one) : first(first_one) {}  // NOLINT: implicit, since most switches have one contact
+  ContactStates(std::same_as<bool> auto acts) : first(acts) {}        // NOLINT: implicit; most laws only act or do not act
   ContactStates(const ContactState& first_one, std::span<const ContactState> others) : first(first_one), further(others) {}
 
   ContactState first;
@@ -149,16 +149,16 @@ class Switch {
   /// Returns the number of states of a compressible gas film, its pressures (model/gas/reynolds_film.h), which follow the modal
   /// coordinates and velocities and are 0 at rest; 0 for other gas laws.
   [[nodiscard]] std::size_t film_states() const;
-  /// Returns the scale of the gas film's pressure states: the uniform film pressure that bends the beam by the contact gap,
-  /// over the ambient pressure.
+  /// Returns a scale for the gas film's pressure states, for error weights: the uniform film pressure that bends the beam by
+  /// the contact gap, over the ambient pressure.
   [[nodiscard]] double film_scale() const;
 
   /// Computes modal accelerations [m kg^(1/2) / s^2] for modal coordinates q, velocities v and drive voltages [V]; arrays of
   /// modes() doubles. `film` are the pressures of a compressible gas film; null stands for a film at rest.
   void accelerations(const double* q, const double* v, std::span<const double> volts, const ContactStates& contacts,
                      Workspace& work, double* result, const double* film = nullptr) const;
-  /// Computes the time derivatives of a state (modal coordinates q, velocities v, film pressures) without q': accelerations,
-  /// then the rates of the film.
+  /// Computes the time derivatives of a state (modal coordinates q, velocities v, film pressures) except q', which is v: the
+  /// accelerations, then the rates of the film pressures.
   void rates(const double* state, std::span<const double> volts, const ContactStates& contacts, Workspace& work,
              double* result) const;
   /// Computes the modal forces of the drives at unit strength (of the piezo: per volt), modes x drives, in the gap field that
@@ -259,8 +259,8 @@ class Switch {
   /// A contact of the switch after the first one.
   struct FurtherContact {
     std::shared_ptr<const ContactLaw> law;
-    Eigen::VectorXd shape;  // mode shapes at the contact, positive towards its plane [kg^(-1/2)]
-    double gap = 0;         // distance of the contact from its plane at rest [m]
+    Eigen::VectorXd shape;  // mode shapes at the contact, positive towards the contact plane [kg^(-1/2)]
+    double gap = 0;         // distance of the contact point from its contact plane at rest [m]
   };
   /// Calls f(contact, state, interference) for every contact after the first one whose law acts.
   template <class F>
@@ -303,9 +303,10 @@ class Switch {
   std::shared_ptr<const ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;
   std::optional<Eigen::VectorXd> rest_;
-  // Largest valid gap to the near electrode; beyond it the beam is too close to an electrode or film wall on the far side [m].
+  // Largest gap to the near electrode at which the run goes on [m]: beyond it the moving part is too close to an electrode or
+  // gas film wall on the far side.
   double most_gap_ = std::numeric_limits<double>::infinity();
-  double contact_gap_ = 0;  // distance of the first contact from its plane at rest [m]
+  double contact_gap_ = 0;  // distance of the first contact point from its contact plane at rest [m]
   double penetration_scale_ = 0;
   double bending_energy_ = 0;
 };

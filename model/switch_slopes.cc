@@ -59,7 +59,7 @@ void SwitchSlopes::accelerations(std::size_t j, const double* q, const double* v
     return;
   }
   const double wanted = model_.contact_deflection(q) - model_.contact_gap();
-  // Returns the factor of deflection_ that gives a neighbouring switch the same interference.
+  // Returns how far to move along deflection_ [m] so that a neighbouring switch has the interference of `model_` at q.
   const auto along = [&](const Switch& s) {
     if (!contact.active) return 0.0;
     return (wanted + s.contact_gap() - s.contact_deflection(q)) / s.contact_deflection(deflection_.data());

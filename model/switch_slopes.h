@@ -48,8 +48,9 @@ class SwitchSlopes {
   /// Returns the derivative by parameter j of the contact point's velocity at fixed modal velocities v [m/s per unit].
   [[nodiscard]] double velocity(std::size_t j, const double* v) const;
   /// Returns the derivative by parameter j of the interference at which the contact law changes from one of its curves to
-  /// another [m per unit]. It is 0 for the contact plane and for the end of a dent, where no force begins. Otherwise it is that
-  /// of the law's reach or kink.
+  /// another [m per unit]. It is 0 for the contact plane, and counts as 0 for the end of a residual dent, where no force begins
+  /// and so the derivative has no effect. For any other change it is the derivative of the law's reach, or of the interference
+  /// at which the force has a kink.
   [[nodiscard]] double edge(std::size_t j, double interference) const;
   /// Returns the derivative by parameter j of a function f(law) of the contact law.
   template <class F>
@@ -76,7 +77,8 @@ class SwitchSlopes {
   // The two switches with a smaller and a larger parameter, for each parameter on which the switch depends.
   std::vector<Neighbours> neighbours_;
   std::vector<Switch::Workspace> above_, below_;
-  Eigen::VectorXd deflection_;  // static deflection under a force at the contact point that moves this point by 1 m
+  // Static deflection under a force at the contact point, scaled to 1 m there: the direction r of the shift.
+  Eigen::VectorXd deflection_;
 };
 
 }  // namespace softland

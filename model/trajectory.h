@@ -22,14 +22,14 @@ struct TrajectoryPoint {
   double contact_force = 0;  ///< contact force, positive when it pushes the beam away from the contact [N]
 };
 
-/// A touch: one interval in which the contact law is active; an instant for an impact on a rigid contact from which the plate
-/// rebounds.
+/// A touch: one time interval in which the contact law acts. The interval is an instant for an impact on a rigid contact from
+/// which the plate rebounds.
 struct Touch {
   double begin = 0;            ///< time at which contact begins [s]
   double end = 0;              ///< time at which contact ends [s]; NaN when the contact is closed at the end of the run
   double impact_velocity = 0;  ///< velocity of the contact point when contact begins [m/s]
   double peak_force = 0;       ///< largest contact force [N]; NaN for a rigid contact, which has an impulse instead
-  double peak_energy = 0;      ///< largest energy stored in the contact; for a rigid contact the kinetic energy [J]
+  double peak_energy = 0;      ///< largest energy stored in the contact; for a rigid contact kinetic energy at impact [J]
   /// Largest pressure of the highest asperity summit over its hardness (model/contact/summit_pressure.h); NaN unless both are
   /// known.
   double pressure = std::numeric_limits<double>::quiet_NaN();
@@ -77,11 +77,12 @@ struct ContactOutcome {
   std::string name;
   std::vector<TrajectoryPoint> points;  ///< motion of the beam at the contact
   std::vector<Touch> touches;
-  double gap = 0;                  ///< distance of the contact from its plane at rest [m]
+  double gap = 0;                  ///< distance of the contact point from its contact plane at rest [m]
   double deepest_penetration = 0;  ///< largest penetration of the contact [m]
   /// Contact force in the closed equilibrium under the hold levels of the drives [N].
   double hold_force = std::numeric_limits<double>::quiet_NaN();
-  double steady_force_time = std::numeric_limits<double>::quiet_NaN();  ///< time from which the contact force is steady [s]
+  /// Time from which the contact force stays at or above ClosingOptions::steady_force [s].
+  double steady_force_time = std::numeric_limits<double>::quiet_NaN();
   /// Least contact force after its first maximum [N].
   double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
   /// Contact resistance at rest under the hold levels of the drives [Ohm].
@@ -137,7 +138,8 @@ struct Trajectory {
   ElectricalOutcome electrical = {};
   EnergyBalance energy;     ///< energy balance at the end of the run
   double layer_energy = 0;  ///< energy that charging the piezo layer takes, which is not part of the energy balance [J]
-  /// Largest residual of the energy balance at any make or break of contact and at the end [J].
+  /// Largest residual of the energy balance (source work less stored and dissipated energy), by magnitude, at any make or break
+  /// of contact and at the end [J].
   double energy_error = 0;
   Work work;
   std::vector<std::string> warnings;
