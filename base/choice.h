@@ -19,8 +19,8 @@ struct Named {
   std::string_view name;
 };
 
-/// A list of at most 12 names, such as keys of a scene, for a member of a row in a table of choices. Constant expressions can
-/// hold the list, unlike std::vector.
+/// A list of at most 12 names, such as scene keys, as a member of a row in a table of choices. Unlike std::vector it can be a
+/// compile-time constant.
 class Words {
  public:
   constexpr Words(std::initializer_list<std::string_view> words) {
@@ -42,8 +42,8 @@ class Words {
 namespace internal {
 template <auto value>
 [[nodiscard]] consteval bool is_enumerator() {
-  // The compiler prints an enumerator by its name, but a value without an enumerator as a number in brackets or parentheses:
-  // "[value = softland::Side::far]", "[value = (softland::Side)3]".
+  // Read from the function's signature whether `value` is an enumerator: compilers print an enumerator by its name, but any
+  // other value as a number in brackets or parentheses: "[value = softland::Side::far]", "[value = (softland::Side)3]".
   constexpr std::string_view text = __PRETTY_FUNCTION__, what = "value = ";
   return text[text.find(what) + what.size()] != '(';
 }

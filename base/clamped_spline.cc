@@ -80,9 +80,9 @@ double ClampedSpline::integral_of_slopes(const ClampedSpline& other) const {
 }
 
 bool is_hinged(const std::vector<double>& x, const std::vector<double>& y) {
-  // Near a hinge the deflection grows with the power 1 of the distance x, near a clamp with the power 2; near the clamp of a
-  // thick beam, which deflects in shear too, with the power 1.4 to 1.5. Powers below `between` mean a hinge. The power follows
-  // from the points 1 and 2, which must lie in the first fifth (`near`) of the beam.
+  // Compute the power of the distance x with which the deflection grows near the end, from the points 1 and 2. It is 1 at a
+  // hinge and 2 at a clamp; 1.4 to 1.5 at the clamp of a thick beam, which deflects in shear too. A power below `between` means
+  // a hinge. The points must lie in the first fifth (`near`) of the beam.
   constexpr double near = 0.2, between = 1.2;
   if (x.size() < 4 || !(x[2] < near * x.back()) || !(y[1] * y[2] > 0)) return false;
   return std::log(y[2] / y[1]) / std::log(x[2] / x[1]) < between;

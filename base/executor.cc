@@ -32,7 +32,7 @@ int threads_available(int wanted) {
   try {
     while (static_cast<int>(probes.size()) < wanted) probes.emplace_back([&] { counted.wait(); });
   } catch (const std::system_error&) {
-    // The machine cannot start another thread.
+    // The machine cannot start another thread: the number of those that it started is the result.
   }
   counted.count_down();
   return static_cast<int>(probes.size());
@@ -66,7 +66,8 @@ class Workers {
 
   void permit(int count) {
     count_ = count;
-    // oneTBB applies the lowest of all limits that exist, so the new limit acts once the assignment has destroyed the old one.
+    // oneTBB applies the lowest of all limits that exist. A higher limit acts once this assignment has destroyed the previous
+    // one.
     limit_ =
         std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count) + 1);
   }
@@ -85,8 +86,8 @@ class Workers {
   }
 
   void meet(int arriving) {
-    // The longest wait for all workers to begin their task. A worker that is busy in another loop may begin later, but oneTBB
-    // has started its thread already.
+    // The longest wait until all workers have begun their task. A worker that is busy in another loop may begin later: waiting
+    // for it is not necessary, since oneTBB has started its thread already.
     constexpr std::chrono::seconds patience{1};
     std::unique_lock lock(meeting_);
     missing_ -= arriving;
@@ -97,7 +98,7 @@ class Workers {
   std::mutex mutex_;  // lets one thread at a time run provide()
   int count_ = 0;
   std::unique_ptr<tbb::global_control> limit_;
-  tbb::task_arena kept_{1};  // oneTBB ends its threads when the last arena is destroyed
+  tbb::task_arena kept_{1};  // exists so that an arena always does: oneTBB ends its threads with the last arena
 
   std::mutex meeting_;
   std::condition_variable all_here_;
@@ -111,7 +112,7 @@ void hand_over() {
   const std::scoped_lock lock(mutex);
 }
 
-// Number of threads of the loop whose task the current thread runs; 0 outside of any loop.
+// Number of threads of the loop whose task the current thread runs, which a nested loop shares; 0 outside of any loop.
 [[gnu::tls_model("initial-exec")]] thread_local int threads_of_loop = 0;
 
 class Loop {

@@ -28,9 +28,9 @@ namespace softland {
 /// Value of a number that a scene file leaves out.
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
-/// The description of one field of the parameter struct `Owner`: a number, a flag, or an enumerator that a word chooses. A
-/// field with neither `in`, `count`, `flag` nor `words` is a number that the reader of scene files does not store in a member
-/// of `Owner`; separate code uses it.
+/// The description of one field of the parameter struct `Owner`: a number, a flag, or an enumerator that a word chooses. The
+/// reader of scene files stores the value in the member of `Owner` that `in`, `count`, `flag` or `choose` names; without any of
+/// them, separate code uses the number.
 template <class Owner>
 struct Field {
   std::string_view key;             ///< key of the field in scene files and in messages
@@ -41,11 +41,13 @@ struct Field {
   bool& (*flag)(Owner&) = nullptr;  ///< member of the struct that stores the flag; null for other fields
   std::string_view or_word = {};    ///< word that a scene file may give instead of a whole number, such as "auto"
   bool required = false;            ///< true when a scene file must give this field; otherwise Owner{} has the default
-  Range range = positive;           ///< allowed range; for scene files, limits of the unit replace infinite ends and an open 0
+  /// Allowed range. For scene files an infinite end, or an open end at 0, is replaced by the largest or smallest value that a
+  /// scene may have in this unit.
+  Range range = positive;
   /// Default value of the field in the notation of scene files; empty when a field that is left out has no value.
   std::string_view fallback = {};
-  std::string_view instead_of = {};  ///< key of another field of the law, which must not be given together with this field
-  std::string_view unless = {};      ///< key of another field; this required field may be left out when that field is given
+  std::string_view instead_of = {};  ///< key of another field of the law; a scene must not give both fields
+  std::string_view unless = {};      ///< key of another field, with which this required field may be left out
   std::string_view not_below = {};   ///< key of another field of the law, whose value is the lower bound of this field
   std::string_view such_as = {};     ///< example value in messages, where the usual example of the unit does not fit
   std::string_view beyond = {};      ///< advice for a value outside the range; with advice, only scene files check the range

@@ -23,8 +23,8 @@ inline Eigen::Map<const Lane> lane(const std::vector<double>& values, std::size_
   return Eigen::Map<const Lane>(values.data() + begin);
 }
 
-/// Loads a lane of an array of `size` numbers; numbers beyond the end of the array are 0. An incomplete lane is loaded number
-/// by number: a vector load waits for numbers that were just written one by one.
+/// Loads a lane (four numbers) of an array of `size` numbers; numbers beyond the end of the array are 0. An incomplete lane is
+/// loaded number by number: a vector load of numbers that were just stored one by one would have to wait for these stores.
 [[nodiscard]] inline Lane load_lane(const double* from, std::size_t begin, std::size_t size) {
   if (begin + lanes <= size) return Eigen::Map<const Lane>(from + begin);
   const std::size_t left = size - begin;

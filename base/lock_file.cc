@@ -18,7 +18,7 @@
 namespace softland {
 namespace {
 
-constexpr std::string_view word = "process ";  // first word in a lock file, before the number of the process
+constexpr std::string_view word = "process ";  // first word in a lock file; the number of the process that has the lock follows
 // Number of attempts to lock the file: holder_of() takes a shared lock for a moment, so one failed attempt does not mean that
 // another run has the lock.
 constexpr int most_attempts = 20;
@@ -70,7 +70,7 @@ LockFile::LockFile(const std::filesystem::path& file, const LockedPlace& place, 
     if (held()) break;
     ::close(descriptor_);
   }
-  // A file of this name that does not begin with the first word of a lock file is not a lock file of this program.
+  // Refuse to overwrite a file of this name that is not a lock file of this program: it does not begin with `word`.
   std::array<char, word.size()> begin{};
   const ssize_t there = ::pread(descriptor_, begin.data(), begin.size(), 0);
   if (there != 0 && (there < 0 || std::string_view(begin.data(), static_cast<std::size_t>(there)) != word)) {

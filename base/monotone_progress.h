@@ -15,7 +15,8 @@ class MonotoneProgress {
  public:
   /// Returns the name of the computation to show, and its completed part, 0 to 1.
   [[nodiscard]] std::pair<std::string, double> updated(std::string_view what, double part) {
-    // A completed part below this share of the part shown so far means that the computation began again.
+    // A report below this share of the part shown so far means that the computation began again; a report between the two is
+    // late.
     constexpr double begins_again = 0.5;
     Round& round = rounds_[std::string(what)];
     if (part < begins_again * round.part) {

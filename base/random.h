@@ -26,12 +26,12 @@ enum class Stream : std::uint64_t {
   bootstrap = 9,     ///< indices of the values that a bootstrap sample takes
   folds = 10,        ///< random partition of the devices for a cross-validation
   measurement = 11,  ///< errors of the simulated measurements on a device
-  fresh = 12,        ///< seeds of simulated devices that a search has not used
+  fresh = 12,        ///< seeds of new samples of simulated devices, to check a search's result on other devices
   jitter = 13,       ///< delays of the edges of a drive's waveform (jitter)
   classes = 14,      ///< reference devices of a calibration, and start centres of its classes (groups of devices)
   plan = 15,         ///< points of an exploration of a design space
-  offspring = 16,    ///< members of an evolutionary search's population that become parents, and the variation of their child
-  hop = 17,          ///< distance from the best point of a search at which a local search begins
+  offspring = 16,    ///< choice of the parents in an evolutionary search's population, and random changes of their child
+  hop = 17,          ///< random start points of local searches near the best point of a search
   /// Seeds of the searches in every round of a comparison of waveform families.
   race = 18,
   tuning = 19,             ///< parameters of simulated devices like the device under test, and searches for its waveform

@@ -14,7 +14,8 @@ inline constexpr std::size_t largest_file = std::size_t{64} << 20;
 /// regular file (a folder, a device, or a pipe, without waiting for data), or is larger than `largest_file`.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
-/// Returns the content as read_file() does, but does not mark the file as an input of this run: the run may overwrite it.
+/// Returns the content of a file as read_file() does, but does not mark the file as an input of this run: results of the run
+/// may overwrite the file.
 [[nodiscard]] std::string look_into(const std::filesystem::path& path);
 
 /// Marks a file that other code reads, such as a database, as an input of this run.

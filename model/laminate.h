@@ -3,12 +3,12 @@
 //   z_c = sum E h z / sum E h,   EI/a = sum E (h^3/12 + h (z - z_c)^2),   mu/a = sum rho h
 //   M/a = sum [s h (z - z_c) + g h^3/12],   curvature at rest = M / EI
 //
-// Sums run over the layers; a is the width. E is the modulus in bending [Pa], h the thickness [m], z the height of the middle
-// of a layer above the near face of the stack [m], z_c the neutral axis [m], rho the density [kg/m^3]; s is the stress before
-// release, positive in tension, and g its growth over the thickness of the layer, away from the near face [Pa/m]. After release
-// the stack shrinks and bends until neither a force nor a moment is left. A curvature is positive away from the near face;
-// tension far from that face causes it. Derived: sections stay plane, and the resultant force of a uniform strain acts at the
-// height z_c. Valid for stacks thin against the radius of curvature.
+// Sums run over the layers; a is the width. E is the modulus in bending [Pa], h the thickness [m] and rho the density [kg/m^3]
+// of a layer. z is the height of the middle of a layer, and z_c that of the neutral axis, above the near face of the stack [m].
+// The stress s before release [Pa] is positive in tension; g is its growth over the thickness of the layer, away from the near
+// face [Pa/m]. After release the stack shrinks and bends until neither a force nor a moment is left. A curvature is positive
+// away from the near face; tension far from that face causes it. Derived: sections stay plane, and the resultant force of a
+// uniform strain acts at the height z_c. Valid for stacks thin against the radius of curvature.
 #pragma once
 
 #include <cmath>

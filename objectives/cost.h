@@ -13,7 +13,7 @@
 //   S  time in separation after first touch, over the score window
 //   P  h / (h + 10 h_s), h the highest rebound, h_s the least height of a significant rebound: it resolves rebounds of
 //      nanometres, as H does not
-//   T  first touch, over that of the step               L  T + 10 max(0, T - T_free): lateness, T_free = free_touch
+//   T  first touch, over that of the step               L  T + 10 max(0, T - T_free): lateness; T_free: see CostScale
 //
 //   bounce, rebound, count     B = 0.2 H + 0.15 V^2 + 0.45 K + 0.1 S^2 + 0.05 P + 0.02 L
 //   settling, impact, energy,  f / (1 + f) with f = F + B / 1000 where h <= h_s / 2, and 1 + (B + F) / 2 for a closing with a
@@ -59,7 +59,7 @@ namespace softland {
 /// The figures of a closing, and those of the plain voltage step that divide them in the cost of a target.
 struct Shares {
   const Metrics &own, &step;
-  double lead = 0;    ///< cost of the target `bounce`, B + E above, for this closing
+  double lead = 0;    ///< cost of the target `bounce` for this closing: B + E in the formulas above
   double window = 0;  ///< time after the first touch over which the closing was simulated [s]
 
   /// Returns `value` over `of_step`, a figure of the plain voltage step. If `of_step` is 0, returns 1 for a positive value and
@@ -71,8 +71,8 @@ struct Shares {
   /// Returns a figure of the closing over the same figure, or the figure `unit`, of the plain voltage step.
   [[nodiscard]] double of(double Metrics::*figure) const { return ratio(own.*figure, step.*figure); }
   [[nodiscard]] double of(double Metrics::*figure, double Metrics::*unit) const { return ratio(own.*figure, step.*unit); }
-  /// Returns a time of the closing over the first contact time of the plain voltage step. NaN, a time that is never reached,
-  /// counts as twice the end of the run.
+  /// Returns a time of the closing, over the first contact time of the plain voltage step. A time that is never reached (NaN)
+  /// counts as twice the end of the run, a penalty.
   [[nodiscard]] double of_time(double time) const {
     const double known = std::isfinite(time) ? time : 2 * (own.initial_contact_time + window);
     return ratio(known, step.initial_contact_time);
@@ -86,13 +86,15 @@ struct TargetRow {
 
   Target value;
   std::string_view name;
-  Figure::Member figure;  ///< figure by which results are compared; it enters the cost when the target has no cost function
+  /// Figure by which results are compared. It also is the target's cost, over the figure of the plain voltage step, when the
+  /// cost function is null.
+  Figure::Member figure;
   Figure::Member unit = figure;  ///< figure of the plain voltage step that divides `figure` in a sum of targets
   /// True when a search for the target continues with `figure` after the cost of `bounce`; false for figures that cannot
   /// improve further once no rebound is significant.
   bool has_own_cost = true;
-  Form nominal = nullptr;  ///< function for the cost of a search on the nominal device; null: `figure` enters the cost
-  Form robust = nullptr;   ///< function for the cost of a search under process variation; null: `figure` enters the cost
+  Form nominal = nullptr;             ///< cost function of a search on the nominal device; null: cost from `figure`
+  Form robust = nullptr;              ///< cost function of a search under process variation; null: cost from `figure`
   std::string_view no_gradient = {};  ///< reason why the cost of the target has no gradient; empty when the cost has one
 
   [[nodiscard]] double in(Form form, const Shares& shares) const {
@@ -175,7 +177,7 @@ class Aim {
 
     [[nodiscard]] std::string_view name() const { return own ? own->name() : to_string(target); }
   };
-  Aim(Target target) : parts_{{.target = target}} {}  // NOLINT(google-explicit-constructor): a target is an aim
+  Aim(Target target) : parts_{{.target = target}} {}  // NOLINT(google-explicit-constructor): a single target is an aim
   /// Takes a user's own objective. Throws InvalidInput when the objective is a null pointer.
   explicit Aim(std::shared_ptr<const OwnObjective> objective)
       : Aim(std::vector<Part>{{.own = refuse_null(std::move(objective))}}) {}
@@ -191,13 +193,15 @@ class Aim {
   [[nodiscard]] bool is_about(Target target) const;
   /// Returns true when a part of the aim is a user's own objective.
   [[nodiscard]] bool has_own_objective() const;
-  /// Returns true when the cost of the aim depends on the drive energy. The cost of a user's own objective may depend on it.
+  /// Returns true when the cost of the aim needs the drive energy: for the target `drive`, and for every user's own objective,
+  /// whose value may depend on this energy.
   [[nodiscard]] bool measures_drive_energy() const;
   /// Returns the user's own objective that a search minimises from its first evaluation on; null when the search first
   /// minimises the cost of `bounce`.
   [[nodiscard]] const OwnObjective* from_the_start() const;
-  /// Returns the same aim with the values of own objectives divided by their value for the plain voltage step, if the value for
-  /// the plain step is below 0.01 or above 100. Throws InvalidInput when this value is not finite.
+  /// Returns this aim with other units for its own objectives: if an own objective's value for the plain voltage step is below
+  /// 0.01 or above 100, its values are divided by this value. Throws InvalidInput when the value for the plain step is not
+  /// finite.
   [[nodiscard]] Aim in_units_of(const Metrics& step) const;
   /// Returns the aim as text, for example "bounce" or "0.7 bounce + 0.3 energy".
   [[nodiscard]] std::string text() const;

@@ -70,8 +70,8 @@ class SlopeFinder {
   using Arc = LinearizedClosing::Arc;
 
   [[nodiscard]] const Arc& arc(std::size_t i) const { return motion_.arcs()[i]; }
-  // Returns of(slopes, j), the derivative of a figure by device parameter j, for every j that changes the switch; empty without
-  // one.
+  // Returns the derivatives of a figure by the device parameters that change the switch: of(slopes, j) for parameter j. Empty
+  // when there is no such parameter.
   template <class Of>
   [[nodiscard]] VectorXd by_device(Of&& of) const {
     if (motion_.by_device() == nullptr) return {};
@@ -280,11 +280,12 @@ std::optional<FigureSlope> cost_slope(const Aim& aim, const Metrics& figures, co
                             {&Metrics::impact_energy, step.impact_energy},
                             {&Metrics::landing_excess, step.landing_excess},
                             {&Metrics::peak_contact_force, step.peak_contact_force}};
-  FigureSlope sum;  // summed in the order of the aim's parts: another order changes the last bits
+  FigureSlope sum;  // summed in the order of `parts`: another order changes the last bits
   for (const CostTerm& part : parts) {
     const double value = figures.*part.figure;
     if (!std::isfinite(value)) continue;
-    // The cost is a closed-form function of the figures, so that its central differences are accurate to about 1e-10.
+    // Compute the derivative of the cost by this figure as a central difference. The cost is a closed-form function of the
+    // figures, so the difference is accurate to about 1e-10.
     const double size = std::abs(value) > 0 ? std::abs(value) : part.scale;
     if (!(size > 0) || !std::isfinite(size)) continue;
     const double h = 1e-6 * size;

@@ -11,7 +11,8 @@
 
 namespace softland {
 
-/// A crossing of the contact plane is called grazing when its speed is below this share of the speed of the first touch.
+/// A crossing of the contact plane is called grazing, and reported with the derivatives, when its speed is below this share of
+/// the speed of the first touch: the derivatives then hold in a small neighbourhood only.
 inline constexpr double grazing_share = 0.1;
 
 /// Derivatives of the figures that enter the cost of a closing. A figure taken where the contact point crosses the contact

@@ -70,7 +70,7 @@ Metrics CourseRecorder::metrics_of(std::size_t contact, const Trajectory& end) {
 }
 
 void CourseRecorder::hand_over(Trajectory& run) {
-  // A run whose start state does not exist has no contacts.
+  // The run has no contacts when the state in which it should begin does not exist.
   for (std::size_t c = 0; c < std::min(contacts_.size(), run.contacts.size()); ++c) {
     run.contacts[c].points = std::move(contacts_[c]->points_);
     run.contacts[c].touches = std::move(contacts_[c]->touches_);

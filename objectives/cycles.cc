@@ -19,7 +19,7 @@ CycleRecorder::CycleRecorder(double contact_gap, const MetricsOptions& options, 
 void CycleRecorder::knot(const TrajectoryPoint& point) {
   if (current_ == cycles_.size()) return;
   cycles_[current_].metrics.knot(point);
-  constexpr double last_part = 1.0 / 3;  // last share of the time after the command to open in which the swing is measured
+  constexpr double last_part = 1.0 / 3;  // final share of a cycle's open phase, in which CycleFigures::swing is measured
   if (times_.begin(current_ + 1) - point.time <= last_part * (times_.period - times_.on_time)) {
     double& swing = cycles_[current_].swing;
     swing = std::max(swing, std::abs(point.position - open_position_));

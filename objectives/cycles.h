@@ -58,7 +58,7 @@ class CycleRecorder final : public ClosingObserver {
     MetricsObserver metrics;
     double source_work = Metrics::unset;  // energy that the drives give in the cycle [J]
     bool began_open = false;
-    // Largest distance of the contact point from its open position at the end of the cycle [m]; time electrically closed [s].
+    // CycleFigures::swing [m] and CycleFigures::on_time [s] of the cycle so far.
     double swing = 0, on_time = 0;
   };
 

@@ -10,8 +10,8 @@ std::string Figure::label() const {
 
 double Figure::value(const Metrics& metrics) const {
   if (const auto* const number = std::get_if<double Metrics::*>(&member)) return metrics.**number;
-  // Counts and flags have no NaN for "not known", so other figures tell whether they are known: those of the motion after first
-  // contact are known when the height of the highest rebound is known.
+  // Counts and flags cannot be NaN for "not known", so another figure tells whether they are known. A count or flag of the
+  // motion after first contact is known when the height of the highest rebound is.
   if (asked == &AskedFigures::opening && is_count())
     return std::isfinite(metrics.opening_time) ? metrics.*std::get<int Metrics::*>(member) : Metrics::unset;
   const bool followed = std::isfinite(metrics.major_bounce_height) &&

@@ -50,7 +50,8 @@ struct Figure {
   double Metrics::*slope = nullptr;
   bool of_results = true, of_devices = false;  ///< true when results show the figure for one closing, or for varied devices
   bool AskedFigures::*asked = nullptr;         ///< request without which results omit the figure; null: always shown
-  double worst = std::numeric_limits<double>::infinity();  ///< value in statistics for a device that does not close
+  /// Value that statistics of varied devices use for a device that does not close.
+  double worst = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] constexpr bool is_count() const { return std::holds_alternative<int Metrics::*>(member); }
   [[nodiscard]] constexpr bool is_yes_or_no() const { return std::holds_alternative<bool Metrics::*>(member); }

@@ -51,7 +51,7 @@ void MetricsObserver::knot(const TrajectoryPoint& point) {
   if (!opening_ && point.time >= options_.opening.time) begin_opening();
 }
 
-// A rebound that has not ended belongs to the closing; later rebounds belong to the opening.
+// A rebound that has not ended at the command to open counts as part of the closing, and later rebounds as part of the opening.
 void MetricsObserver::begin_opening() {
   landing_ = course();
   if (landing_->above) figures_.rebound(*rebounds_.under_way());
@@ -141,7 +141,8 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   const double permanent = significant_ > 0 ? last_end_ : course.first_touch.time;
   result.last_rebound_end = std::isnan(permanent) ? course.last_time : permanent;
   const double rest = course.last_time - permanent;
-  // Without a significant rebound the contact may count as settled although the in-contact period is not known.
+  // A contact is settled when it stays closed for at least one in-contact period. If that period is not known, a closing
+  // without a significant rebound counts as settled.
   const bool long_enough = rest >= end.in_contact_period || (result.bounce_count == 0 && std::isnan(end.in_contact_period));
   result.settled = end.status == Status::done && end.is_held && !course.above && long_enough;
   if (!result.settled) {

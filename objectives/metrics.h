@@ -49,17 +49,18 @@ struct Metrics {
   static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
   Status status = Status::not_run;
-  double initial_contact_time = unset;     ///< t_i, time of first contact [s]
-  double permanent_contact_time = unset;   ///< t_p, time from which the contact stays closed [s]; NaN when not settled
-  double bounce_time = unset;              ///< t_b = t_p - t_i, duration of bouncing [s]
-  int bounce_count = 0;                    ///< N_B, number of significant rebounds; meaningless without contact
-  double major_bounce_height = unset;      ///< B_H, height of the highest rebound [m]; 0 when there is no rebound
-  double first_rebound_time = unset;       ///< duration of the first significant rebound [s]; 0 without a rebound
-  double impact_velocity = unset;          ///< v_i, impact velocity of the first touch [m/s]
-  double peak_contact_force = unset;       ///< largest contact force of the run [N]
-  double impact_energy = unset;            ///< sum over touches of the largest stored contact energy [J]
-  double hold_force = unset;               ///< contact force in the closed equilibrium under the hold levels of the drives [N]
-  double steady_force_time = unset;        ///< time from which the contact force is steady, up to the end of the run [s]
+  double initial_contact_time = unset;    ///< t_i, time of first contact [s]
+  double permanent_contact_time = unset;  ///< t_p, time from which the contact stays closed [s]; NaN when not settled
+  double bounce_time = unset;             ///< t_b = t_p - t_i, duration of bouncing [s]
+  int bounce_count = 0;                   ///< N_B, number of significant rebounds; meaningless without contact
+  double major_bounce_height = unset;     ///< B_H, height of the highest rebound [m]; 0 when there is no rebound
+  double first_rebound_time = unset;      ///< duration of the first significant rebound [s]; 0 without a rebound
+  double impact_velocity = unset;         ///< v_i, impact velocity of the first touch [m/s]
+  double peak_contact_force = unset;      ///< largest contact force of the run [N]
+  double impact_energy = unset;           ///< sum over touches of the largest stored contact energy [J]
+  double hold_force = unset;              ///< contact force in the closed equilibrium under the hold levels of the drives [N]
+  /// Time from which the contact force stays at or above MetricsOptions::steady_force times the hold force [s].
+  double steady_force_time = unset;
   double least_force_after_touch = unset;  ///< least contact force after its first maximum [N]
   double capacitance = unset;              ///< capacitance of beam and electrode at rest under the hold levels [F]
   double drive_energy = unset;             ///< energy that the drives give in the run [J]
@@ -69,12 +70,13 @@ struct Metrics {
   double electrical_settling = unset;  ///< time from which the switch stays closed electrically [s]
   /// Number of electrical openings after the first closing; meaningless when the switch never closes electrically.
   int electrical_bounces = 0;
-  double pressure = unset;  ///< largest pressure of an asperity summit over its hardness, in any touch
+  double pressure = unset;  ///< largest pressure of an asperity summit in any touch, over the hardness of the contact
   /// Charge through the contact until the command to open, or the end of the run [C]; see objectives/transferred_charge.h.
   double make_charge = unset;
   double break_charge = unset;  ///< charge through the contact after the command to open [C]
   AskedFigures asked = {};      ///< optional figures of merit that results show
-  // The following figures of the opening are known when the drives command the switch to open.
+  // The figures from here to back_stop_velocity describe the opening; they are known when the drives command the switch to
+  // open.
   double open_command = unset;  ///< time of the command to open [s]
   double opening_time = unset;  ///< time from the command to open to the last break of the contact [s]
   int release_bounces = 0;      ///< number of bounces on opening; meaningless if the run ends closed
@@ -88,18 +90,19 @@ struct Metrics {
   double closed_time = unset;  ///< time in contact from the first touch to the last break [s]
   /// Largest impact velocity on a back stop after the command to open, 0 without an impact [m/s]; set by simulate().
   double back_stop_velocity = unset;
-  // simulate() sets the following figures when the contact never closes.
+  // simulate() sets static_deflection, overshoot and open_settling_time when the contact never closes.
   double static_deflection = unset;  ///< position of the contact point in the open equilibrium under the hold levels [m]
   /// Largest excursion of the contact point beyond static_deflection, away from its initial position [m].
   double overshoot = unset;
-  /// Time from which the contact point stays near static_deflection [s]; NaN when the contact point does not.
+  /// Time from which the contact point stays within a band about static_deflection [s], see set_open_figures(); NaN when it
+  /// does not settle.
   double open_settling_time = unset;
-  // simulate() sets the following figures, which depend on the drives. Largest |V| of the electrodes' drives in the simulated
-  // time window; that of the piezo's drive when there is no electrode [V].
+  // simulate() sets peak_voltage and peak_slew, figures of the drives in the simulated time window.
+  /// Largest |V| of the electrodes' drives; that of the piezo's drive when there is no electrode [V].
   double peak_voltage = unset;
   double peak_slew = unset;                ///< largest |dV/dt| of any drive [V/s]; infinite for a jump of the voltage
   double largest_impact_velocity = unset;  ///< largest impact velocity of all touches [m/s]
-  // The following figures of a closing enter the cost of a search; results do not show them.
+  // The figures from here on enter the cost of a search; results do not show them.
   double closest = unset;    ///< smallest distance to the contact plane before the first touch [m]; known also without contact
   double separated = unset;  ///< total time in separation after the first touch [s]
   /// End of the last significant rebound [s]; the end of the run when this rebound has not ended, and the time of first contact
@@ -130,7 +133,7 @@ class LandingFigures {
   /// Summary of the contact point's motion up to the end of a run.
   struct Course {
     bool sound = true;   ///< true when every point of the motion was finite, and the points were in order of time
-    bool above = false;  ///< true when a rebound had not ended at the end of the run; rebound() has received it too
+    bool above = false;  ///< true when a rebound had not ended at the end of the run; this rebound was passed to rebound()
     FirstTouch first_touch = {};
     double last_time = 0;             ///< time of the last point of the motion [s]
     double closest = Metrics::unset;  ///< smallest distance to the contact plane before the first touch [m]

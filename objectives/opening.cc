@@ -40,8 +40,8 @@ void BandFollower::reach_end_of_drives(double position) {
   residual_ = std::fmax(residual_, std::abs(position - band_.open_position));
 }
 
-// Follows a monotone part of the contact point's motion, which may cross the whole band about the open position. Stores the
-// time at which the motion enters the band when it ends in the band.
+// Updates the settling time with a monotone part of the contact point's motion, which may cross the whole band about the open
+// position. If the part ends in the band, stores the time at which it enters the band.
 void BandFollower::leave_band(const Quintic& curve, double from, double at_from, double to, double at_to) {
   const double middle = band_.open_position;
   const bool begins_inside = std::abs(at_from - middle) <= band_.width;

@@ -98,8 +98,8 @@ class CommandedOpening {
   OpeningCommand command_;
   double contact_gap_, significant_;  // distance from rest to the contact plane, and least height of a bounce that counts [m]
   BandFollower band_;
-  double nearest_ = std::numeric_limits<double>::quiet_NaN();  // nearest position to the contact after the turn towards it [m]
-  double highest_ = 0, separated_ = 0;                         // height of the highest bounce, total time in separation [s]
+  double nearest_ = std::numeric_limits<double>::quiet_NaN();  // position nearest to the contact since the turn towards it [m]
+  double highest_ = 0, separated_ = 0;                         // height of the highest bounce [m], total time in separation [s]
   int bounces_ = 0;
 };
 

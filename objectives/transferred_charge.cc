@@ -13,8 +13,9 @@ void TransferredCharge::follow(const TrajectoryPoint& from, const TrajectoryPoin
   if (!options_.load.is_given() || !(span > 0)) return;
   const double middle = 0.5 * (from.position + to.position) + (from.velocity - to.velocity) * span / 8;
   if (middle < contact_gap_) return;
-  // Find the part of the interval in which the contact force is below the steady force.
-  double first = 0, last = 1;  // begin and end of this part, as shares of the interval
+  // Find the part of the time between the two motion points in which the contact force is below the steady force: only there
+  // does the charge count.
+  double first = 0, last = 1;  // begin and end of the part with low force, as shares of the time between the points
   const double rise = to.contact_force - from.contact_force;
   if (rise != 0) {
     const double crossing = (options_.light_below - from.contact_force) / rise;
@@ -30,7 +31,8 @@ void TransferredCharge::follow(const TrajectoryPoint& from, const TrajectoryPoin
   }
   const Quintic motion(from.time, from.position, from.velocity, from.acceleration, to.time, to.position, to.velocity,
                        to.acceleration);
-  constexpr std::array places{0.5 - 0.3872983346207417, 0.5, 0.5 + 0.3872983346207417};  // three-point Gauss-Legendre nodes
+  // Nodes of the three-point Gauss-Legendre rule on [0, 1].
+  constexpr std::array places{0.5 - 0.3872983346207417, 0.5, 0.5 + 0.3872983346207417};
   constexpr std::array weights{5.0 / 18, 8.0 / 18, 5.0 / 18};
   for (std::size_t k = 0; k < places.size(); ++k) {
     const double share = std::lerp(first, last, places[k]);
