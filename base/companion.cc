@@ -30,7 +30,7 @@ fs::path real_path(const fs::path& path) {
   return error ? path : found;
 }
 
-// True for a regular file that is a database, whether this process has it open or not.
+// Returns true for a regular file that is a database. A file that mark_as_database() has marked is not opened for the check.
 bool is_database(const fs::path& path) {
   struct stat info {};
   if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return false;

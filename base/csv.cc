@@ -60,7 +60,7 @@ void read_csv(std::string_view content, const std::string& file, const std::vect
     content.remove_prefix(line_end == std::string_view::npos ? content.size() : line_end + 1);
     if (text.empty() || text.starts_with('#')) continue;
 
-    // Format file name and line number only when a message needs them, since measured files have many rows.
+    // The place (file name and line number) is formatted only for a message, since measured files have many rows.
     const CsvPlace place = [&] { return fmt::format("{}:{}", file, line_number); };
     const std::vector<std::string_view> found = cells(text);
     if (width == 0) {

@@ -29,8 +29,8 @@ struct SymmetricEigen {
 [[nodiscard]] Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix);
 /// Returns the x with matrix x = right; none where the symmetric matrix is not positive definite.
 [[nodiscard]] std::optional<Eigen::VectorXd> solve_definite(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
-/// Returns combinations of the columns of `basis` that are orthonormal in an energy. `energy` is the matrix of the energy
-/// between the columns of `basis`. Returns none when `energy` is not positive definite.
+/// Returns combinations of the columns of `basis` that are orthonormal in an energy, for which `energy` is the symmetric matrix
+/// of the energies between the columns. Returns none when `energy` is not positive definite.
 [[nodiscard]] std::optional<Eigen::MatrixXd> orthonormal_in(const Eigen::MatrixXd& energy, const Eigen::MatrixXd& basis);
 
 /// Returns the x with matrix x = right, for a symmetric matrix that is positive definite up to rounding.

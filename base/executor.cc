@@ -140,7 +140,7 @@ class Loop {
     threads_of_loop = outer;
   }
 
-  // Calls work() on all threads of the arena, on at most one thread per task.
+  // Calls work() on all threads of the oneTBB arena in which the loop runs, on at most one thread per task.
   void work_together() {
     hand_over();
     const auto help = [this] {
@@ -184,8 +184,8 @@ std::size_t run_tasks(std::size_t count, int jobs, const std::function<void(std:
   if (threads == 1) {
     loop.work();
   } else if (nested) {
-    // Without isolation this thread, while it waits here in a task of the outer loop, could begin another task of the outer
-    // loop.
+    // Isolation is necessary: otherwise this thread, while it waits for an inner loop in a task of the outer loop, could begin
+    // another task of the outer loop.
     tbb::this_task_arena::isolate([&] { loop.work_together(); });
   } else {
     tbb::task_arena(threads).execute([&] { loop.work_together(); });

@@ -10,7 +10,7 @@ namespace softland {
 /// The folder or file from which a lock keeps other runs away, in the words of messages.
 struct LockedPlace {
   std::string name;      ///< name of the folder or file, with which messages begin: "--out run1"
-  std::string kind;      ///< "folder" or "folder of the store", for messages
+  std::string kind;      ///< word for the place in messages: "folder" or "folder of the store"
   std::string occupied;  ///< message when another process has the lock: "another run works in this folder"
 };
 

@@ -34,8 +34,8 @@ bool acts_on_a_terminal(char32_t c) {
   const auto within = [c](char32_t first, char32_t last) { return c >= first && c <= last; };
   return c < 0x20 || within(0x7F, 0x9F) ||         // control characters: the Unicode sets C0 and C1, and DEL
          c == 0x061C || within(0x200E, 0x200F) ||  // characters that set the direction of text
-         within(0x2028, 0x202E) ||  // separators of lines and paragraphs; embeddings and overrides of the direction of text
-         within(0x2066, 0x2069);    // characters that isolate text of another direction
+         // Separators of lines and of paragraphs; characters that embed or override a direction of text.
+         within(0x2028, 0x202E) || within(0x2066, 0x2069);  // characters that isolate text of another direction
 }
 
 std::string cleaned(std::string_view text, std::string_view kept) {

@@ -68,7 +68,7 @@ enum class Stream : std::uint64_t {
   return (static_cast<double>(random_bits(seed, stream, counter) >> 12) + 0.5) * 0x1p-52;
 }
 
-/// Returns a standard normal number: the quantile at a random probability, so that its size is at most 8.2.
+/// Returns a standard normal number: the quantile at a random probability, so that its magnitude is at most 8.2.
 [[nodiscard]] double random_normal(std::uint64_t seed, Stream stream, std::uint64_t counter);
 
 }  // namespace softland

@@ -392,9 +392,9 @@ Eigen::RowVectorXd NormalisedModes::shape(double x, int derivative) const {
   return shape(*element, 2 * (x - element->begin) / (element->end - element->begin) - 1, derivative);
 }
 
-// The receptance a (deflection at x by a unit force there) grows from minus infinity at the first frequency to infinity at the
-// second. When the second mode does not move at x, a has no zero between the frequencies; the second frequency is then the
-// result. Newton's method solves (lambda_2 - lambda) a = 0, whose left side is nearly linear.
+// The receptance a (deflection at x by a unit force there, as a function of lambda = omega^2) grows from minus infinity at the
+// first frequency to infinity at the second. When the second mode does not move at x, a has no zero between the frequencies;
+// the second frequency is then the result. Newton's method solves (lambda_2 - lambda) a = 0, whose left side is nearly linear.
 double NormalisedModes::pinned_inverse_square(double x, std::optional<double> near) const {
   // Relative width of the bracket that ends the search, and relative step after which the next step of Newton's method would be
   // rounding.

@@ -54,8 +54,8 @@ class NormalisedModes {
     int modes = 0;
     bool far_clamp = false;
     double axial_force = 0;                   ///< normalised axial force N L^2 / EI of the beam
-    double near_rotation = Anchor::rigid;     ///< rotational stiffness of the support at x = 0, c L / EI
-    double near_translation = Anchor::rigid;  ///< translational stiffness of the support at x = 0, k L^3 / EI
+    double near_rotation = Anchor::rigid;     ///< rotational stiffness of the support at x = 0, in units of EI / L
+    double near_translation = Anchor::rigid;  ///< translational stiffness of the support at x = 0, in units of EI / L^3
     /// Stiffnesses of the support at the far end, in units of EI / L and EI / L^3; not used with far_clamp.
     double far_rotation = 0, far_translation = 0;
     /// Returns true when the rigidity of a beam section changes linearly or an end rests on springs.

@@ -46,7 +46,8 @@ namespace softland {
 /// The equilibrium in which a run begins, under the drives' voltages before t = 0.
 enum class StartState { open, closed };
 
-/// Returns the integrator with which a run begins if the user chooses none: lawson, or esdirk for a compressible gas film.
+/// Returns the integrator with which a run begins if the user chooses none: lawson (explicit), or esdirk (implicit) for a
+/// compressible gas film.
 [[nodiscard]] Integrator automatic_integrator(const Switch& model);
 
 struct ClosingOptions {

@@ -31,7 +31,7 @@ struct Gap {
 };
 
 /// The contact of a beam with the face of a dielectric: the pressure of the face on the beam, see model/contact/face.h. The
-/// face is a wall when neither a stiffness nor asperities are given.
+/// face is a rigid wall when neither a stiffness nor asperities are given.
 struct Landing {
   /// Stiffness of an elastic bed on the dielectric's face, per area [Pa/m]; NaN: not given.
   double stiffness = std::numeric_limits<double>::quiet_NaN();

@@ -73,7 +73,8 @@ void set_face_contact(Device& d) {
   if (landing == nullptr) return;
   const double plane = d.gap.electrode - landing->begin();
   const auto set = [&](Contact& face) {
-    // This stiffness of a wall is a placeholder: the switch computes the stiffness from its modes.
+    // A wall has no stiffness in the description: 1 is a placeholder, which the switch replaces by a stiffness that it computes
+    // from its modes.
     face.model = LinearSpring{.stiffness = landing->is_wall() ? 1 : landing->stiffness};
     if (landing->asperities) face.model = *landing->asperities, face.pad_length = length_of_faces(d);
     if (!d.structure.is_rigid()) face.at = first_touch_on(d);

@@ -64,7 +64,8 @@ std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge
   return ends;
 }
 
-// Interpolates modal coordinates, velocities and accelerations at a time within a step from the values at both ends.
+// Interpolates modal coordinates, velocities and accelerations at the time t within an integration step from the recorded
+// values at both ends of the step.
 template <class Modal>
 void move_to(double t, const RecordedMotion::Motion& from, const RecordedMotion::Motion& to, Modal& q, Modal& v,
              Modal& accelerations) {
@@ -350,8 +351,8 @@ void LinearizedClosing::jump_at(const RecordedMotion::PhaseEvent& passage, const
   jumps_.back().parts = parts_.size();
 }
 
-// Returns the jump of the derivative d of the state by the parameters when a plate comes to rest on the contact plane: only the
-// position of the plane still depends on parameters.
+// Returns the jump of the derivative d of the state by the parameters when a plate comes to rest on the contact plane. The
+// plate then is where the plane is, so only derivatives of the plane's position remain.
 LinearizedClosing::Jump LinearizedClosing::at_rest(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Zero(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   for (Index j = 0; j < moving_; ++j) {
@@ -409,7 +410,8 @@ LinearizedClosing::Jump LinearizedClosing::crossed(const RecordedMotion::PhaseEv
     jump.by_device.col(j).head(size_) -=
         lost * (by_device_->interference(parameter, before.q.data()) - by_device_->edge(parameter, level));
   }
-  // The residual interference of the contact is no longer used, so its derivative is 0.
+  // The contact law after the change does not depend on the residual interference, so the derivative of the interference is set
+  // to 0.
   if (change.before.shift != 0 && change.after.shift == 0) matrix.bottomRows<1>().setZero();
   return jump;
 }

@@ -17,7 +17,7 @@ struct SampledModes;
 
 class ModalBasis {
  public:
-  /// Factors from the normalised mode shapes and frequencies to those of the structure.
+  /// Factors by which lengths, mode shapes and frequencies of the normalised modes are multiplied for the structure.
   struct Scales {
     double length = 0;     ///< length of the structure [m]
     double shape = 0;      ///< ratio of a mode shape to the normalised mode shape [kg^(-1/2)]

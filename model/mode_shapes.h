@@ -12,8 +12,8 @@ struct ModeShapes {
   Eigen::MatrixXd shapes;  ///< mode shapes at the positions, a row for each position [kg^(-1/2)]
 };
 
-/// Returns the mode shapes at this number of positions from end to end for a beam or a structure from a table of modes; for a
-/// plate at the quadrature points of the switch. Throws InvalidInput when `places` is below two.
+/// Returns the mode shapes at `places` positions from end to end, for a beam or a structure from a table of modes. For a plate
+/// returns the mode shapes at the quadrature points of the switch. Throws InvalidInput when `places` is below two.
 [[nodiscard]] ModeShapes mode_shapes(const Switch& model, int places);
 /// Returns the mode shapes phi_i of any structure at these positions from 0 to its length [m], a row for each position
 /// [kg^(-1/2)].

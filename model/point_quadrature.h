@@ -37,7 +37,7 @@ class PointQuadrature {
   [[nodiscard]] const Eigen::MatrixXd& weighted_shapes() const { return weighted_shapes_; }
 
   void set_gap(const double* q, GapField& field) const {
-    // noalias() needs no temporary, so there is no allocation in the hot path.
+    // Here noalias() avoids a temporary matrix, so that the function, called in every step, does not allocate memory.
     field.gap.matrix().noalias() = shapes_ * Eigen::Map<const Eigen::VectorXd>(q, shapes_.cols());
     field.gap = rest_gaps_ - field.gap;
   }

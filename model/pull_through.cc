@@ -97,7 +97,7 @@ std::optional<double> pull_through_from(const Switch& model, std::size_t drive, 
     const double middle = low + (high - low) / 2;
     (follows(middle) ? low : high) = middle;
   }
-  // Check the voltage again: Newton's method may have failed although a closed equilibrium exists.
+  // Check the collapse voltage with a full search: Newton's method may have failed although a closed equilibrium exists.
   levels[drive] = model.neutral_voltage(drive) + high;
   return keeps_closed(model, closed_equilibrium(model, levels)) ? std::nullopt : std::optional(high);
 }

@@ -69,8 +69,8 @@ class Receptance {
     double half = 0, rigidity = 0, mass = 0;
     double reach = 0;  // factor that scales a dimensionless shape function to unit bending energy
     Lane form[size][size];
-    Lane inverse[size];          // inverse pivots of the element's elimination
-    Lane negative, least_pivot;  // number of negative pivots, and smallest pivot, in this elimination
+    Lane inverse[size];          // inverse pivots of this elimination
+    Lane negative, least_pivot;  // number of negative pivots, and smallest pivot, of this elimination
 
     [[nodiscard]] bool holds(const BeamElement& e) const;
   };

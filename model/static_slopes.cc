@@ -48,8 +48,8 @@ VectorXd change_of_accelerations(SwitchSlopes& by, std::size_t j, const VectorXd
   return change;
 }
 
-// Returns the derivatives, by device parameters, of the voltage with which a drive holds the contact point at a given
-// deflection, while the interference (deflection less contact gap) stays constant.
+// Returns the derivatives, by device parameters, of the voltage with which a drive holds the contact point at a constant
+// interference (deflection less contact gap). `deflection` is the deflection of the contact point in this state.
 std::vector<double> held_slopes(const Switch& model, SwitchSlopes& by, std::size_t drive, double deflection, Bias bias) {
   std::vector<double> slopes(by.moving().size(), no_slope);
   const std::optional<HeldEquilibrium> held = held_by_drive(model, drive, deflection, bias);
@@ -204,8 +204,8 @@ std::vector<double> open_capacitance_slopes(const Switch& model, SwitchSlopes& b
   const std::optional<Rest> rest = rest_under(model, values);
   if (!rest) return slopes;
   const Tangent tangent(model, rest->q, values, rest->contact);
-  // The force of an electrode is (V - V0)^2 times its column of by_strength. It is also the gradient of C (V - V0)^2 / 2, C the
-  // capacitance, so that the gradient of C is twice this column.
+  // Column `drive` of by_strength is the force of the electrode at unit strength, so the force is (V - V0)^2 times this column.
+  // The force is also the gradient of C (V - V0)^2 / 2, C the capacitance: the gradient of C is twice this column.
   const VectorXd by_q = 2 * tangent.by_strength.col(static_cast<Eigen::Index>(drive));
   for (std::size_t j = 0; j < slopes.size(); ++j) {
     const VectorXd motion = -tangent.solved(change_of_accelerations(by, j, rest->q, values, rest->contact, tangent.by_q));

@@ -26,7 +26,7 @@
 namespace softland {
 namespace {
 
-// Calls visit(range) for the quadrature points over each electrode on whose dielectric the beam may close.
+// Calls visit(range) for every range of quadrature points over an electrode on whose dielectric the beam may close.
 template <class Visit>
 void for_faces(const Device& device, const Eigen::ArrayXd& positions, Visit&& visit) {
   for (const Electrode& e : device.electrodes) {

@@ -112,8 +112,8 @@ class Switch {
   /// Returns the height above the plane of first touch at which the contact law begins to act [m]; 0 for most laws, and without
   /// contact.
   [[nodiscard]] double contact_reach(std::size_t c = 0) const;
-  /// Returns true when the contact acts along the pad or the face of a dielectric. Such a contact is active at all times, and
-  /// acts at all points beyond the contact plane.
+  /// Returns true when the contact acts along its pad or along the face of a dielectric. The law of such a contact is active at
+  /// all times: the force acts at every point of the pad or face that is beyond the contact plane.
   [[nodiscard]] bool has_spread_contact(std::size_t c = 0) const { return c == face_at_ || (c == 0 && pad_ != nullptr); }
   /// Returns the state of a contact before its first touch: the contact acts only within the reach of its law.
   [[nodiscard]] ContactState untouched(const double* q) const {

@@ -67,7 +67,7 @@ struct EnergyBalance {
 struct ElectricalOutcome {
   /// Time at which the connection first closes [s]; NaN when it never closes.
   double first_closed = std::numeric_limits<double>::quiet_NaN();
-  /// Time from which the electrical connection stays closed [s]; NaN when the connection is open at the end.
+  /// Time from which the electrical connection stays closed until the end of the run [s]; NaN when it is open at the end.
   double closed_from = std::numeric_limits<double>::quiet_NaN();
   int openings = 0;  ///< number of electrical openings after first_closed that are longer than ElectricalClosing::after
 };
@@ -78,7 +78,7 @@ struct ContactOutcome {
   std::vector<TrajectoryPoint> points;  ///< motion of the beam at the contact
   std::vector<Touch> touches;
   double gap = 0;                  ///< distance of the contact point from its contact plane at rest [m]
-  double deepest_penetration = 0;  ///< largest penetration of the contact [m]
+  double deepest_penetration = 0;  ///< largest penetration: motion of the contact point beyond the contact plane [m]
   /// Contact force in the closed equilibrium under the hold levels of the drives [N].
   double hold_force = std::numeric_limits<double>::quiet_NaN();
   /// Time from which the contact force stays at or above ClosingOptions::steady_force [s].
@@ -98,8 +98,8 @@ struct Trajectory {
   /// True when the run began in contact (ClosingOptions::start, begins_closed), so that the drives did not cause the first
   /// touch.
   bool began_closed = false;
-  /// Position of the contact point in the other equilibrium (closed when open was requested, and vice versa), if the requested
-  /// equilibrium does not exist but the other does [m].
+  /// When the equilibrium in which the run should begin does not exist: position of the contact point in the other equilibrium
+  /// (closed if open was requested, and vice versa) if that exists [m].
   double other_start = std::numeric_limits<double>::quiet_NaN();
   bool ends_at_touch = false;  ///< true when the run ended at its first touch because the switch has no contact law
   double contact_gap = 0;      ///< distance of the contact point from the plane of first touch at rest [m]

@@ -173,7 +173,7 @@ class Aim {
     Target target = Target::bounce;
     double weight = 1;
     std::shared_ptr<const OwnObjective> own = nullptr;  ///< a user's own objective, which replaces the target
-    double unit = 1;                                    ///< divisor of the values of the user's own objective
+    double unit = 1;                                    ///< divisor of the own objective's values, see in_units_of()
 
     [[nodiscard]] std::string_view name() const { return own ? own->name() : to_string(target); }
   };

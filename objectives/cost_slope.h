@@ -28,7 +28,8 @@ struct CostSlopes {
   /// ratio is small, a touch is about to begin or to vanish, and derivatives hold in a small neighbourhood only.
   double grazing = 1;
 };
-/// Returns the derivatives of the figures of a closing, as weights of the derivative of its motion. The drive energy has none.
+/// Returns the derivatives of the figures of a closing, as weights of the derivative of its motion by a parameter. The drive
+/// energy has no derivative here.
 [[nodiscard]] CostSlopes cost_slopes(const Switch& model, std::span<const Signal> signals, const LinearizedClosing& motion,
                                      const MetricsOptions& options);
 

@@ -53,7 +53,8 @@ class CourseRecorder final : public ClosingObserver {
   // Returns the index in points_ at which the last, incomplete bucket of motion points begins.
   [[nodiscard]] std::size_t last_begin() const { return ends_.empty() ? 0 : ends_.back(); }
   void reduce_long_last();
-  // Removes from points_, from index `begin` on, the points of the motion that a bucket does not store.
+  // Removes the points of the motion, from index `begin` of points_ on, that a bucket does not store: all but the first and
+  // last one and the extrema.
   void reduce(std::size_t begin);
 
   double contact_gap_;

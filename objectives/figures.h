@@ -38,7 +38,7 @@ struct Figure {
 
   std::string_view key;     ///< name of the figure in every JSON; ends with the unit
   std::string_view name;    ///< name of the figure in tables of a report
-  std::string_view also;    ///< another name of the figure in common use; may be empty
+  std::string_view also;    ///< another common name of the figure; may be empty
   std::string_view symbol;  ///< short name of the figure, such as t_b; may be empty
   std::string_view about;   ///< what the figure is, in one line
   std::string_view unit;    ///< unit of the figure; empty for a count and for yes or no
@@ -49,7 +49,8 @@ struct Figure {
   /// figure has no derivative.
   double Metrics::*slope = nullptr;
   bool of_results = true, of_devices = false;  ///< true when results show the figure for one closing, or for varied devices
-  bool AskedFigures::*asked = nullptr;         ///< request without which results omit the figure; null: always shown
+  /// Optional request of a scene without which results omit the figure; null: always shown.
+  bool AskedFigures::*asked = nullptr;
   /// Value that statistics of varied devices use for a device that does not close.
   double worst = std::numeric_limits<double>::infinity();
 
@@ -484,7 +485,7 @@ inline constexpr std::array compared_figures{figure_of(&Metrics::initial_contact
 inline constexpr std::array studied_figures{compared_figures[0], compared_figures[1], compared_figures[2],
                                             figure_of(&Metrics::peak_contact_force)};
 
-/// Holds one value of type T for every figure of merit in figure_table.
+/// Holds one value of type T, such as a number or a text, for every figure of merit in figure_table.
 template <class T>
 class PerFigure {
  public:

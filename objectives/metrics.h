@@ -130,7 +130,7 @@ class LandingFigures {
   void touch(const Touch& touch);
   void rebound(const Rebound& rebound);
 
-  /// Summary of the contact point's motion up to the end of a run.
+  /// The facts about the contact point's motion up to the end of a run that figures of merit need.
   struct Course {
     bool sound = true;   ///< true when every point of the motion was finite, and the points were in order of time
     bool above = false;  ///< true when a rebound had not ended at the end of the run; this rebound was passed to rebound()

@@ -23,7 +23,8 @@ namespace softland {
 
 struct TransferOptions {
   SwitchedLoad load = {};
-  /// Steady contact force, below which charge counts [N]; the charge is NaN when this force is NaN.
+  /// Steady contact force [N]: charge counts that flows while the contact force is below it. The charge is NaN when this force
+  /// is.
   double light_below = std::numeric_limits<double>::quiet_NaN();
   std::optional<ContactResistance> contact = {};  ///< resistance of the contact; counts as 0 if empty
 };
