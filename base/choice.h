@@ -97,7 +97,7 @@ template <class Row, std::size_t n>
   return text;
 }
 
-/// Returns several texts as one text for a message: "bounce, count and energy".
+/// Returns several texts as one text for a message, joined with "and": "bounce, count and energy".
 template <class Texts>
 [[nodiscard]] std::string in_words(const Texts& texts, const std::string& last = " and ") {
   std::string words;

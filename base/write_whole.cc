@@ -129,7 +129,7 @@ void write_whole(const std::filesystem::path& path,
   const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
   const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   written(directory >= 0, "open its folder");
-  // Some file systems cannot sync a folder and say so with EINVAL; the rename itself has been done.
+  // EINVAL is no failure: some file systems cannot sync a folder and report this so. The rename itself has been done.
   const bool synced = ::fsync(directory) == 0 || errno == EINVAL;
   const int reason = errno;
   ::close(directory);

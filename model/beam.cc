@@ -161,8 +161,8 @@ std::string why_no_beam(const Device& d) {
 }
 
 NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_(std::move(beam)) {
-  // A strong tension bends the beam only close to its clamps, over lengths of L / sqrt(N L^2 / EI). Take an element for every
-  // five of these lengths, up to 40 elements.
+  // Under a strong tension N the modes bend the beam sharply only close to its clamps, over lengths of L / sqrt(N L^2 / EI).
+  // Take an element for every five of these lengths, up to 40 elements.
   const double layers = std::sqrt(std::max(0.0, beam_.axial_force)) / 5;
   const int count = std::max({shortest_count, beam_.modes, static_cast<int>(std::min(layers, 40.0))});
   // Smallest mass over rigidity of a section; the fourth power of a section's wave number is proportional to this ratio.

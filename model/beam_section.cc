@@ -14,7 +14,7 @@ namespace {
 // Returns the axial force that a stress, equal everywhere before release, leaves in a beam between its anchors [N]: the
 // sections stretch each other until the force is the same in all of them.
 double axial_force(const Structure& s, double stress) {
-  double shrinks = 0;  // shortening of the beam without its anchors, by the released stress [m]
+  double shrinks = 0;  // shortening of the released beam by the stress if no anchor held it [m]
   for (const LocalSection& local : local_sections(s)) shrinks += stress / local.youngs_modulus * (local.end - local.begin);
   return shrinks / stretch_per_force(s);
 }

@@ -33,7 +33,7 @@ struct CompositeSection {
 [[nodiscard]] double bending_modulus(const Structure& structure);
 /// Returns rigidity and mass of the beam without its piezo layer, with its surface skins if the beam has any.
 [[nodiscard]] CompositeSection plain_section(const Structure& structure, const std::optional<Surface>& surface = {});
-/// Returns rigidity and mass of a beam with piezo layer (Zheng, Chen & Chen 2017, eqs. 5-6, equal widths).
+/// Returns rigidity and mass of the section of a beam with a piezo layer of equal width (Zheng, Chen & Chen 2017, eqs. 5-6).
 [[nodiscard]] CompositeSection layered_section(const Structure& structure, const Piezo& piezo);
 /// Returns the bending moment of the piezo layer per volt, e31 a (z_c - bp / 2) with e31 = d31 Ep, Young's modulus Ep, neutral
 /// axis z_c, width a and layer thickness bp [N m / V]: negative for d31 < 0.

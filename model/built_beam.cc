@@ -63,7 +63,7 @@ std::optional<PartConflict> layer_conflict(const Device& d, std::size_t i) {
   return std::nullopt;
 }
 
-/// Returns true when the anchors leave the beam free to move as a rigid body.
+/// Returns true when the anchors leave the beam free to move as a rigid body: such a beam is refused.
 bool is_mechanism(const Anchor& near, const Anchor& far) {
   const auto holds = [](double stiffness) { return stiffness > 0; };
   const bool turns = holds(near.rotation) || holds(far.rotation);

@@ -141,7 +141,8 @@ class ClosingRun {
     restart();
   }
 
-  // Handles an impact on a rigid contact: reverses the velocity, or ends the motion when the rebound would be too low.
+  // Handles an impact on a rigid contact: reverses the velocity and multiplies it by the coefficient of restitution, or brings
+  // the plate to rest when the rebound would be too low.
   void strike() {
     const RestingPlate::Impact impact = parts_.plate.strike(here());
     Touch& touch = parts_.first().touches.last();

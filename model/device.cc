@@ -218,7 +218,8 @@ void check_contact(const Device& d, std::size_t i) {
   require(!rigid || !d.gas || !is_compressible(*d.gas), [&] {
     return path + ".model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests";
   });
-  // A contact needs no pad size along a dielectric's face, and on a rigid plate when its law does not depend on the area.
+  // The contact along a dielectric's face has no pad of its own. On a rigid plate the pad size is not needed when the contact
+  // law does not depend on the area.
   const bool no_pad = c.along_face || (s.is_rigid() && !acts_per_area(c.model) && c.pad_length == 0);
   require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
     return fmt::format("{}.pad_length = {}: must be positive and below structure.length = {}", path,

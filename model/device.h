@@ -72,7 +72,8 @@ struct Electrode {
   std::vector<Span> further = {};  ///< pads of the electrode besides the first pad
   Fringing fringing = Fringing::meijs_fokkema;
   Side side = Side::near;
-  double gap = 0;  ///< distance at rest to the electrode's face on the far side, for Side::far and Side::both [m]
+  /// Distance of the moving part at rest from the electrode's face on the far side [m], for Side::far and Side::both.
+  double gap = 0;
   std::optional<Dielectric> dielectric = {};  ///< dielectric on the electrode, on the near side only
 
   /// Returns all pads of the electrode on a beam of this length [m].

@@ -69,7 +69,7 @@ class DistributedLawOf final : public DistributedLaw {
         double sum[lanes];
         for (Eigen::Index k = 0; k < lanes; ++k)
           sum[k] = load[p + k] + factor * share[p + k] * law.load(gap[p + k], velocity[p + k]);
-        // A loop, because memcpy would prevent vector instructions.
+        // Copy by a loop: memcpy would prevent vector instructions.
         for (Eigen::Index k = 0; k < lanes; ++k) load[p + k] = sum[k];
       }
       return;

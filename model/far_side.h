@@ -20,7 +20,8 @@ struct FarSide {
   DualOf<P> at_floor = law.load(DualOf<P>(floor, 1), DualOf<P>(1));
   static constexpr bool drive_depends = Law::drive_depends;
 
-  /// Returns the load of the far side on the beam [N/m]; for a law that a drive scales, at unit drive.
+  /// Returns the load of the force law on the far side [N/m], positive towards the near side; for a law that a drive scales,
+  /// the load at unit strength of the drive.
   template <class S>
   S load(S gap, S velocity) const {
     const S far = S(both_gaps) - gap;
@@ -32,8 +33,8 @@ struct FarSide {
         },
         [&]() -> S { return -law.load(far, -velocity); });
   }
-  /// Returns the potential of the far side [J/m] at unit drive; below the gap `floor` it is the parabola whose slope is the
-  /// tangent.
+  /// Returns the potential per length of the force law on the far side [J/m] at unit strength of the drive. Below the gap
+  /// `floor` it is the parabola whose slope is the tangent.
   [[nodiscard]] double potential(double gap) const requires(Law::drive_depends) {
     const double far = both_gaps - gap, below = far - floor;
     if (below >= 0) return law.potential(far);

@@ -41,7 +41,7 @@ int terms_of_exponential(double norm) {
   return std::max(fewest, static_cast<int>(found - largest_norm.begin()) + 1);
 }
 
-// Returns the largest sum of magnitudes in a column of a matrix whose rows are padded to whole SIMD vectors.
+// Returns the 1-norm (largest sum of magnitudes in a column) of a matrix whose rows are padded to whole SIMD vectors.
 double column_norm(const double* x, Index size, Index stride) {
   Lane largest = Lane::Zero();
   for (Index c = 0; c < stride; c += lane_size) {

@@ -118,9 +118,9 @@ class LinearizedClosing {
   // series, and the derivatives of the modal accelerations by the inputs.
   struct Transition {
     const double* magnus;  // matrix of Magnus' series; rows are padded to whole SIMD vectors
-    const double* begin;   // derivatives by the inputs at the start of the part, modes x inputs
-    const double* middle;  // derivatives by the inputs in the middle of the part, modes x inputs
-    const double* end;     // derivatives by the inputs at the end of the part, modes x inputs
+    const double* begin;   // derivatives of accelerations by the inputs at the begin of the part, modes x inputs
+    const double* middle;  // derivatives of accelerations by the inputs in the middle of the part, modes x inputs
+    const double* end;     // derivatives of accelerations by the inputs at the end of the part, modes x inputs
   };
   // The jump of d = dy/dp at an event; the last row of d is the derivative of the contact's residual interference. After the
   // jump d is matrix * d + by_device + the terms of `moved`.
@@ -185,7 +185,7 @@ class LinearizedClosing {
   std::size_t on_ = 0;            // index in pieces_ of the signal pieces in use at the end of the linearised steps
   std::vector<double> volts_;
   std::vector<Part> parts_;
-  std::vector<double> numbers_;  // matrices of Magnus' series, and derivatives by the inputs, for all parts
+  std::vector<double> numbers_;  // matrices of Magnus' series, and derivatives of accelerations by the inputs, for all parts
   std::vector<Jump> jumps_;
   Eigen::MatrixXd rest_;  // derivatives of the rest position at the start by device parameters, one column each
   Node from_, middle_, to_;

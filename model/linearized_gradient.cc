@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index row_lanes = lanes;               // rows are padded to multiples of this, whole SIMD vectors
-constexpr Index most_unknowns = 2 * most_modes;  // largest number of unknowns, a multiple of the SIMD lanes
+constexpr Index most_unknowns = 2 * most_modes;  // largest number of unknowns, a multiple of row_lanes
 
 // Adds value += gain for very many small gains with compensated summation (Kahan 1965): `left` stores by how much the rounded
 // value exceeds the exact sum.

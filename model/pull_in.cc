@@ -138,7 +138,8 @@ StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
 
 namespace {
 
-// Computes the branch of equilibria from the straight beam up to the contact plane, in small steps of the deflection.
+// Follows the branch of equilibria from the straight beam almost to the contact plane, in small steps of the deflection, so
+// that the next search on the branch starts from an equilibrium near the plane.
 void follow_to_plane(EquilibriumBranch& branch, double plane) {
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
 }

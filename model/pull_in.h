@@ -117,7 +117,7 @@ struct ClosedEquilibrium {
 /// clamped at both ends does not: such a beam leaves the equilibrium by a motion in other modes.
 [[nodiscard]] bool judges_stability(const Switch& model);
 
-/// Returns true when the closed equilibrium exists and is stable, as far as the modes of the switch show this.
+/// Returns true when the closed equilibrium exists and is stable. It counts as stable when judges_stability() is false.
 [[nodiscard]] bool keeps_closed(const Switch& model, const std::optional<ClosedEquilibrium>& closed);
 
 /// Returns the voltage of `drive`, above its neutral voltage V0, from which the closed switch collapses onto the electrode [V],

@@ -124,8 +124,8 @@ double acting_pull_through(const Switch& model, std::size_t drive, std::span<con
   return pull_through_of_narrow_window(model, drive, std::move(levels), release, precision);
 }
 
-// Returns true when the beam closes on a rigid dielectric face (wall) of this drive's electrode: the beam then does not move
-// below the face.
+// Returns true when the beam closes on a rigid dielectric face (wall) of this drive's electrode. The beam then cannot move
+// below the face, and the switch has no collapse voltage.
 bool lands_on_wall(const Switch& model, std::size_t drive) {
   const Device& device = model.device();
   if (drive >= device.electrodes.size() || !device.electrodes[drive].dielectric || device.face_contact() != 0) return false;

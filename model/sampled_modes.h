@@ -22,7 +22,7 @@ namespace softland {
 
 struct SampledModes {
   struct PanelPlaces {
-    std::vector<double> corners;                         // ends of the quadrature panels [m]
+    std::vector<double> corners;                         // ends of the quadrature panels along the structure [m]
     double contact = 0, piezo_begin = 0, piezo_end = 0;  // positions of the contact and of both ends of the piezo layer [m]
     std::vector<double> further_contacts;                // positions of the contacts after the first [m]
     double points_per_length = 0;

@@ -34,7 +34,7 @@ struct Tangent {
     model.drive_forces(work, by_strength);
   }
 
-  // Returns the solution x of F_q x = right, F_q being `by_q`, with each row in units of its mode's stiffness.
+  // Returns the solution x of F_q x = right, F_q being `by_q`. Each equation is divided by its mode's stiffness.
   [[nodiscard]] VectorXd solved(const VectorXd& right) const {
     return solve_linear(scale.asDiagonal() * by_q, scale.cwiseProduct(right));
   }

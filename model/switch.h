@@ -45,7 +45,8 @@ class ReynoldsFilm;   // defined in model/gas/reynolds_film.h
 
 struct SwitchOptions {
   double points_per_length = 24;  ///< number of quadrature points over a beam's length
-  int points_per_panel = 3;       ///< least number of quadrature points of a panel; a study of accuracy increases both numbers
+  /// Least number of quadrature points of a panel. A study of accuracy increases this number and points_per_length.
+  int points_per_panel = 3;
   /// Number of modes of a beam, which replaces the number in the device's structure: at most most_static_modes. A number above
   /// most_modes is for statics only.
   std::optional<int> modes = {};
@@ -125,7 +126,7 @@ class Switch {
   /// Returns the gas law; null without gas.
   [[nodiscard]] const GasLaw* gas() const { return gas_.get(); }
   [[nodiscard]] const std::optional<MidPlaneStretching>& stretching() const { return stretching_; }
-  /// Returns the distance of the contact point at rest from the contact plane [m].
+  /// Returns the distance of contact point c from its contact plane at rest [m].
   [[nodiscard]] double contact_gap(std::size_t c = 0) const { return c == 0 ? contact_gap_ : further_[c - 1].gap; }
   /// Returns the gap below which every law is continued by its tangent and a run counts as having touched the electrode [m]: a
   /// hundredth of the gap d0 at rest. The gap is negative, below the face, for a switch that closes on a dielectric: minus half

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double shear_coefficient = 5.0 / 6;  // shear coefficient kappa of a rectangular section
 constexpr double usual_poissons_ratio = 0.3;
-// Largest length / thickness of a beam for which the frequency difference is computed: it falls with the square, and beyond
-// this value rounding shows.
+// Largest length / thickness of a beam for which the difference of the frequencies is computed. The difference falls with the
+// square of this ratio, and at larger ratios rounding errors spoil it.
 constexpr double most_slender = 1000;
 
 // Returns Euler-Bernoulli's wave number of a mode, counted from 1: the root beta of cos(beta) cosh(beta) = 1 between two
@@ -41,7 +41,8 @@ Basis basis(const std::vector<double>& points, int functions, bool both_clamped)
   const auto rows = static_cast<Eigen::Index>(points.size());
   Basis b{.values = Eigen::MatrixXd(rows, functions), .slopes = Eigen::MatrixXd(rows, functions)};
   for (Eigen::Index p = 0; p < rows; ++p) {
-    const double z = points[static_cast<std::size_t>(p)], x = (1 + z) / 2;  // z: Gauss point in [-1, 1]; x in [0, 1]
+    // Gauss point z in [-1, 1], and the same point mapped to [0, 1], x.
+    const double z = points[static_cast<std::size_t>(p)], x = (1 + z) / 2;
     const double held = both_clamped ? x * (1 - x) : x, held_slope = both_clamped ? 1 - 2 * x : 1;
     // Legendre polynomials of degree k - 1 and k at z, and their derivatives by z.
     double last = 0, now = 1, last_slope = 0, slope = 0;

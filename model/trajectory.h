@@ -67,7 +67,8 @@ struct EnergyBalance {
 struct ElectricalOutcome {
   /// Time at which the connection first closes [s]; NaN when it never closes.
   double first_closed = std::numeric_limits<double>::quiet_NaN();
-  /// Time from which the electrical connection stays closed until the end of the run [s]; NaN when it is open at the end.
+  /// Time from which the electrical connection stays closed [s], until the end of the run or the command to open; NaN when the
+  /// connection is open then.
   double closed_from = std::numeric_limits<double>::quiet_NaN();
   int openings = 0;  ///< number of electrical openings after first_closed that are longer than ElectricalClosing::after
 };

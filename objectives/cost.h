@@ -247,7 +247,7 @@ class Aim {
   std::vector<Part> parts_;
 };
 
-/// Figures that measure how hard a closing is, for the comparison with the plain voltage step.
+/// Figures that measure how hard a closing hits the contact, for the comparison with the plain voltage step.
 inline constexpr auto hard_figures =
     std::to_array({&Metrics::largest_impact_velocity, &Metrics::peak_contact_force, &Metrics::impact_energy});
 /// Returns the largest relative excess of the closing's hard_figures over those of the plain voltage step; 0 when no figure

@@ -245,7 +245,7 @@ class SlopeFinder {
   double first_speed_ = 0, fastest_ = 0;  // impact velocity of the first touch, and largest of all touches [m/s]
   // Smallest distance to the contact plane before the first touch [m].
   double closest_ = std::numeric_limits<double>::infinity();
-  // Depth [m] and force [N] of the current touch; largest force of all touches [N].
+  // Largest depth [m] of the current touch so far, and contact force there [N]; largest force of all touches [N].
   double depth_ = 0, force_ = 0, largest_force_ = 0;
   double height_ = 0, highest_ = 0;  // height of the current rebound and of the highest rebound [m]
   FigureSlope energy_slope_, force_slope_, height_slope_;

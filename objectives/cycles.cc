@@ -15,7 +15,7 @@ CycleRecorder::CycleRecorder(double contact_gap, const MetricsOptions& options, 
   cycles_.front().began_open = true;
 }
 
-// A point of the motion at the boundary of two cycles belongs to both cycles.
+// Adds a point of the motion to the current cycle; a point at the boundary of two cycles belongs to both.
 void CycleRecorder::knot(const TrajectoryPoint& point) {
   if (current_ == cycles_.size()) return;
   cycles_[current_].metrics.knot(point);

@@ -445,7 +445,7 @@ inline constexpr auto figure_table = std::to_array<Figure>({
      .of_results = false},
 });
 
-/// Returns the figures for which `chosen` returns true, in the order of figure_table.
+/// Returns a list of the figures for which `chosen` returns true, in the order of figure_table, at compile time.
 template <bool (*chosen)(const Figure&)>
 [[nodiscard]] consteval auto figures_that_are() {
   std::array<Figure, static_cast<std::size_t>(std::count_if(figure_table.begin(), figure_table.end(), chosen))> all{};

@@ -118,7 +118,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
     if (end.status == Status::done) result.status = result.touched() ? Status::not_settled : Status::no_contact;
     return result;
   }
-  if (end.ends_at_touch) return result;  // the run ended at first touch without a contact law; the other figures need one
+  if (end.ends_at_touch) return result;  // the run ended at first touch: the figures below need a contact law
   result.hold_force = end.hold_force;
   result.resistance = end.hold_resistance;
   result.electrical_contact = end.electrical.first_closed;

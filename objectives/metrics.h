@@ -41,7 +41,7 @@ struct MetricsOptions {
   double significant_rebound = 1e-9;  ///< height above which a rebound counts [m]
   double steady_force = 0.1;          ///< share of the hold force above which the contact force counts as steady
   AskedFigures asked = {};
-  OpeningCommand opening = {};    ///< command to open; figures of the closing count until the time of the command
+  OpeningCommand opening = {};    ///< command to open; figures of the closing describe the motion up to it
   TransferOptions transfer = {};  ///< load circuit for the transferred charge; set when Device::load is given
 };
 

@@ -26,7 +26,7 @@ class OwnObjective {
   OwnObjective& operator=(const OwnObjective&) = default;
   virtual ~OwnObjective() = default;
 
-  /// Returns the name of the objective for messages and results.
+  /// Returns the name of the own objective, for messages and results.
   [[nodiscard]] virtual std::string_view name() const = 0;
   /// Returns the value F of a closing that a search minimises. F must be >= 0, and should be about 1 for the plain step; F is
   /// divided by its value for the plain step if that value is below 0.01 or above 100. value() is called only for closings that
