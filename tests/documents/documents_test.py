@@ -1,6 +1,6 @@
 """documents_test.py CASE PROGRAM: what the documents say holds.
 
-Cases: first_page, scenes, commands, statuses, results, headlines, published, links, citation. Prints every finding; exit status 1 when there is one.
+Cases: first_page, howtos, scenes, commands, statuses, results, headlines, published, links, citation. Prints every finding; exit status 1 when there is one.
 """
 
 import csv
@@ -15,6 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 FIRST_PAGE_BYTES = 6144  # one screen, with its code
+HOWTO_LINES = 80  # one task
 CELL_CHARACTERS = 140  # one line of a wide window
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -65,6 +66,19 @@ def first_page(_):
             if sentence in said and "README.md" in (said[sentence].name, path.name):
                 yield f"{path.relative_to(ROOT)} and {said[sentence].relative_to(ROOT)} both say: {sentence}"
             said.setdefault(sentence, path)
+
+
+# A how-to has one task, and is not longer.
+
+
+def howtos(_):
+    pages = sorted(ROOT.glob("docs/howto/*.md"))
+    if not pages:
+        yield "docs/howto has no pages"
+    for path in pages:
+        lines = len(path.read_text(encoding="utf-8").splitlines())
+        if lines > HOWTO_LINES:
+            yield f"{path.relative_to(ROOT)} has {lines} lines, more than {HOWTO_LINES}"
 
 
 # Scenes that a page of the manual tells its reader to save are taken by the program.
@@ -344,7 +358,7 @@ def citation(program):
 
 def main():
     case, program = sys.argv[1:]
-    cases = (first_page, scenes, commands, statuses, results, headlines, published, links, citation)
+    cases = (first_page, howtos, scenes, commands, statuses, results, headlines, published, links, citation)
     findings = list({function.__name__: function for function in cases}[case](program))
     for finding in findings:
         print(finding)
