@@ -96,7 +96,7 @@ def main():
 
 `softland cycle SCENE closed/best.toml opened/release.toml`, where `closed` is of `softland optimize SCENE --robust none` and `opened` of `softland release SCENE`, with the defaults (bridge: --budget {QUICK['capacitive-bridge']}) and a duty of 50 %.
 A rate is steady where ten cycles close and open, and land within 5 % as fast and as high as the first. The largest is that below which every rate of the scan was steady, in steps of 5 %. The energy is that of the sources in the last
-cycle at the rate of the waveforms. See [docs/figures.md](../docs/figures.md#cycles).
+cycle at the rate of the waveforms. See [docs/reference/opening.md](../docs/reference/opening.md#cycles).
 
 - made by `bench/run_cycles.py BUILD/apps/softland results`, {datetime.date.today()}, revision {revision()}
 - machine: {machine()}

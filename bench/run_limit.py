@@ -69,7 +69,7 @@ def main():
 
 The least time in which any waveform within the limits of the drivers brings the contact point to its plane, at a hundredth of the plain step's impact velocity or less; the
 least time with every mode at rest; and the quickest landing without a significant rebound that was found from there, or the one that rebounds least. Nothing varies. See
-[docs/figures.md](../docs/figures.md#the-limit-softland-limit).
+[docs/reference/verification.md](../docs/reference/verification.md#the-limit).
 
 - made by `bench/run_limit.py BUILD/apps/softland results`, {datetime.date.today()}, revision {revision()}
 - one of them: `softland limit scenes/mem-gold.toml --out limit`

@@ -55,7 +55,7 @@ def main():
 
 `softland release SCENE --actuator A --seed N` on the shipped switches, seeds {SEEDS[0]} to {SEEDS[-1]}: from rest on the contact under the scene's hold levels, dropped to 0 V at once, and under two pulses of every drive that
 may brake. Open for good: the contact point stays within 5 % of the contact gap of its open position, within the scene's window. Confirmed: by a tighter integrator and with two more modes. Nothing varies. See
-[docs/figures.md](../docs/figures.md#opening-again-softland-release).
+[docs/reference/opening.md](../docs/reference/opening.md#search-an-opening-waveform).
 
 - made by `bench/run_release.py BUILD/apps/softland results`, {datetime.date.today()}, revision {revision()}
 - machine: {machine()}

@@ -27,7 +27,7 @@ class Closing:
 
     Every figure is an attribute, named as in the JSON of the program without its unit: `closing.impact_velocity` is a float [m/s] with
     attributes `unit` and `error`. The error is absolute: the difference of two runs or, for a certified closing, a bound. Figures that do not exist
-    are NaN. docs/figures.md defines the figures; names follow Bognash & Asokanthan (2019).
+    are NaN. docs/reference/runs.md defines the figures; names follow Bognash & Asokanthan (2019).
     """
 
     def __init__(self, native: _softland.Closing) -> None:
@@ -55,7 +55,7 @@ class Closing:
 
     @property
     def status(self) -> str:
-        """Outcome: done, open, no_contact, not_settled, collapsed_at_rest, collapsed_onto_electrode or numerical_failure (docs/figures.md)."""
+        """Outcome: done, open, no_contact, not_settled, collapsed_at_rest, collapsed_onto_electrode or numerical_failure (docs/reference/runs.md)."""
         return self._native.status
 
     @property

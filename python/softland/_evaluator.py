@@ -64,7 +64,7 @@ class Evaluator:
         return dict(self._reasons)
 
     def jacobian(self, x: npt.ArrayLike) -> Array:
-        """Returns the exact derivatives of the figures by the keys at a row, (d,) -> (m, d), also through impacts and rebounds (docs/figures.md).
+        """Returns the exact derivatives of the figures by the keys at a row, (d,) -> (m, d), also through impacts and rebounds (docs/reference/searches.md).
 
         Raises InvalidInput with the reason if there is no derivative: for counts, for a source that rounds to bits, and for vdp="each" unless either all
         voltages or none are multiples of Vdp of one electrode.

@@ -249,10 +249,10 @@ void print_figures() {
   fmt::print(
       "# Figures of merit\n\n"
       "*For everyone who reads a result: what is this figure, what is its unit, and how does its error become known?*\n\n"
-      "This page is made from the table of figures by which softland writes results. [Figures of merit and searches](../figures.md)\n"
-      "has their rules, and says how far a figure can be trusted. Names follow Bognash 2019. The window is the simulated time span.\n"
-      "Every figure is taken at the contact point. A condition such as `t_p < 45 us` names a figure by its symbol, or by its key\n"
-      "without the unit.\n\n"
+      "This page is made from the table of figures by which softland writes results. [Figures of a run](runs.md) has their rules, and\n"
+      "[Errors of figures](errors.md) says how far a figure can be trusted. Names follow Bognash 2019. The window is the simulated\n"
+      "time span. Every figure is taken at the contact point. A condition such as `t_p < 45 us` names a figure by its symbol, or by\n"
+      "its key without the unit.\n\n"
       "## Figures of one run\n");
   print_figure_table([](const Figure& f) { return f.of_results; });
   fmt::print("\n## Figures of varied devices\n\nStudies of process variation have one more figure.\n");
@@ -288,7 +288,7 @@ void print_targets() {
       "# Targets of a search\n\n"
       "*For everyone who searches: which targets are there, and which figure does each improve?*\n\n"
       "This page is made from the table of targets. `softland optimize --target NAME` chooses one, and `--target \"0.7 bounce + 0.3 "
-      "energy\"`\na weighted sum. [Costs](../figures.md#costs) says how a target is searched, and which goal it has.\n\n"
+      "energy\"`\na weighted sum. [Costs](costs.md) says how a target is searched, and which goal it has.\n\n"
       "| target | figure | key in JSON | searched |\n|---|---|---|---|\n");
   for (const TargetRow& row : targets) {
     const Figure& figure = figure_of(row.figure);

@@ -250,7 +250,7 @@ TEST(Accuracy, CallsFiguresIllConditionedThatImperceptibleChangesMove) {
   for (const bool conditioned : study_of_first_bounces().conditioned) EXPECT_TRUE(conditioned);
 }
 
-// Long after the first large rebound the closing is chaotic: see docs/figures.md.
+// Long after the first large rebound the closing is chaotic: see docs/reference/errors.md.
 TEST(Accuracy, ShowsTheEndOfAChaoticClosingAsACloud) {
   const PreparedScene p = prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V"}));
   AccuracyOptions options = few_settings();

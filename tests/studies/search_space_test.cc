@@ -479,7 +479,7 @@ TEST(ShapedDrives, AreSeveralWhereAnElectrodeBrakes) {
 }
 
 TEST(Documentation, NamesTheFamiliesAndBudgetsThatAreTheDefault) {
-  std::ifstream stream(std::string(SOFTLAND_SOURCE_DIR) + "/docs/figures.md");
+  std::ifstream stream(std::string(SOFTLAND_SOURCE_DIR) + "/docs/reference/searches.md");
   const std::string text(std::istreambuf_iterator<char>(stream), {});
   for (const Shaped drives : {Shaped::electrode, Shaped::piezo, Shaped::several})
     EXPECT_NE(text.find(fmt::format("`{}`", default_families(drives))), std::string::npos) << default_families(drives);
