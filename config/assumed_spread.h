@@ -2,10 +2,10 @@
 //
 //   beam                      thickness 2 %, Young's modulus 3 %
 //   plate                     stiffness 6.7 %, which these two variations give a beam
-//   structure of given modes  natural frequencies 3.5 %
+//   structure of kind modes   natural frequencies 3.5 %
 //   every structure           all gaps, by one common factor, 2 %
 //
-// Each varied quantity is multiplied by an independent normal factor with this standard deviation.
+// Each varied quantity is multiplied by an independent normal factor of mean 1, whose standard deviation is the listed number.
 #pragma once
 
 #include <string_view>
@@ -14,11 +14,11 @@
 
 namespace softland {
 
-/// Note for the user that a process variation is assumed.
+/// Note that a report shows when assume_spread() has added the process variation.
 inline constexpr std::string_view assumed_prose = "The scene has no [spread]: a typical process variation is assumed.";
 
-/// Adds the assumed process variation [spread] to a scene that has none, and returns true in that case. An existing section is
-/// kept; read_scene() refuses an empty one.
+/// Adds the section [spread] with the assumed process variation to a scene without this section. Returns true if the section
+/// was added. An existing [spread] does not change, even if it is empty; read_scene() then refuses the scene.
 bool assume_spread(SceneFile& file);
 
 }  // namespace softland

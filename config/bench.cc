@@ -34,7 +34,7 @@ class MeasurementReader {
  public:
   MeasurementReader(const toml::table& table, const std::string& file, const std::filesystem::path& directory)
       : table_(table), file_(file), directory_(directory) {}
-  /// Takes the keys of one measurement from the command-line option `option` instead of a file.
+  /// Takes the keys of a contact measurement from a command-line option; messages name `option` instead of a file.
   MeasurementReader(const toml::table& table, const std::string& option)
       : table_(table), file_(option), directory_(option), is_option_(true) {}
 
@@ -111,7 +111,7 @@ class MeasurementReader {
     double unit = 1;   // size of the column's unit [SI unit]
   };
   // Returns the column whose name is `stem` and a unit of the dimension `due`: "closing_time_us" or "capacitance [fF]" for the
-  // stems "closing_time" and "capacitance". None without such a column.
+  // stems "closing_time" and "capacitance". Returns none if the header has no column of this form.
   [[nodiscard]] std::optional<Column> column_of(const std::vector<std::string>& header, std::string_view stem,
                                                 const Dimension& due) const {
     for (const std::string& name : header) {
@@ -168,7 +168,7 @@ class MeasurementReader {
       }
     } catch (const InvalidInput& error) {
       if (std::string_view(error.what()).find("measurement.") != std::string_view::npos)
-        throw;  // refuse() would name a key a second time
+        throw;  // the message already names a key of the measurement; refuse() would add a second one
       refuse("file", error.what());
     }
   }
@@ -178,8 +178,8 @@ class MeasurementReader {
            : kind.has_level  ? fmt::format("voltage_V and {}", value)
                              : value;
   }
-  // Returns true if a header names a column as softland does, for any quantity. Such a file is not read as that of an
-  // instrument: an error then names the columns that the measurement needs.
+  // Returns true if a header has a column such as "position_m", named as softland names the column of any quantity. The file is
+  // then not read as an instrument's file; if the measurement needs other columns, an error names them.
   [[nodiscard]] bool is_own(const std::vector<std::string>& header) const {
     return std::ranges::any_of(bench_quantities(), [&](const BenchQuantity& one) {
       return column_of(header, one.name, one.name == of_contact ? dimension::none : one.dimension).has_value();
@@ -293,8 +293,8 @@ class MeasurementReader {
     }
     require(!m.values.empty(), [&] { return fmt::format("{}: all rows are before t = 0; give shift to move them", path); });
   }
-  // Returns the factor that converts the values of a trace_of() this channel to the SI unit of the quantity: `per_volt`, or the
-  // size of the unit that the measurement or the file names.
+  // Returns the factor that converts the recorded values of the channel, as trace_of() returns them, to the SI unit of the
+  // quantity: the key per_volt, or the size of the unit that the key `unit` or the file names.
   [[nodiscard]] double unit_of_trace(const BenchQuantity& kind, const Channel& channel) const {
     if (has("per_volt")) {
       refuse_where(!channel.is_voltage && !channel.unit.empty(), "per_volt",
@@ -327,8 +327,8 @@ class MeasurementReader {
     m.has_end = true;
   }
 
-  // Replaces the rows of contact states (0 open, 1 closed) by the first times at which the contact closes or opens. Each time
-  // is halfway between two rows of different state.
+  // Replaces the rows of contact states (0 open, 1 closed) by the times of the first closings and openings; the key `edges`
+  // gives their number. Each time is halfway between two rows of different state.
   void find_edges(BenchMeasurement& m) const {
     const int edges = has("edges") ? whole("edges", 1, 3) : 1;
     std::vector<double> found;

@@ -48,7 +48,7 @@ struct BenchQuantity {
   std::string_view name;
   Dimension dimension;
   bool has_level = false;     ///< true when a measurement of this quantity may have a level (a commanded voltage)
-  bool has_waveform = false;  ///< true when a measurement of this quantity may have a waveform instead of a level
+  bool has_waveform = false;  ///< true when a measurement may have a drive waveform instead of a level (a voltage step)
   bool is_over_time = false;  ///< true when the quantity is recorded against time
   bool is_positive = true;    ///< true when measured values of the quantity must be above 0
 };
@@ -79,9 +79,8 @@ struct Bench {
 
 [[nodiscard]] const std::vector<BenchQuantity>& bench_quantities();
 
-/// Reads how the state of a contact (open or closed) follows from its recorded voltage, from assignments such as `threshold=1.5
-/// V`. The keys are those of a contact in a file of measurements. Throws InvalidInput with the option `--contact`, the value
-/// and the rule.
+/// Reads assignments such as `threshold=1.5 V`, which state at which recorded voltage a contact is closed. The keys are those
+/// of a contact in a file of measurements. Throws InvalidInput with the option `--contact`, the value and the rule.
 [[nodiscard]] ContactTraceKeys contact_trace_keys(const std::vector<std::string>& assignments);
 
 /// Reads a file of measurements. Throws InvalidInput with file, line, key, value and rule.

@@ -1,5 +1,6 @@
 // Reads a per-device calibration from text: the quantities that are measured on every device before use, with the measurement
-// errors, "Vdp,frequency:0.5 %" (no error given: 0). The text " in 8 classes" at the end sorts the devices into classes.
+// errors, as in "Vdp,frequency:0.5 %"; an error that is not given is 0. With " in 8 classes" at the end, the devices are
+// sorted by the measured values into 8 classes, and all devices of a class use one waveform.
 #pragma once
 
 #include <string>

@@ -20,7 +20,7 @@ struct Sign {
   std::string_view text;
   Comparison comparison;
 };
-// Comparison signs of a condition. Longer signs precede shorter ones: "<=" is tried before "<".
+// Comparison signs of a condition, in the order in which the parser tries them: "<=" must precede "<".
 constexpr auto signs = std::to_array<Sign>({{"<=", Comparison::at_most},
                                             {">=", Comparison::at_least},
                                             {"==", Comparison::equal},

@@ -19,7 +19,7 @@ enum class Comparison { below, at_most, equal, at_least, above };
 struct Condition {
   Figure figure;
   Comparison comparison = Comparison::below;
-  double limit = 0;      ///< limit of the figure [its SI unit; if of_step, multiples of the figure under a plain step]
+  double limit = 0;      ///< limit of the figure [its SI unit; if of_step, multiples of the figure under a voltage step]
   std::string text;      ///< the condition as the user wrote it
   bool of_step = false;  ///< true if the limit is in multiples of the figure under a plain voltage step
 
@@ -33,13 +33,13 @@ struct Condition {
 /// InvalidInput whose message states the rule that the text breaks.
 [[nodiscard]] Condition parse_condition(std::string_view text, std::span<const Figure> figures);
 
-/// Returns the condition with an absolute limit instead of one relative to the plain step; `of_step` is the figure under the
-/// plain step. Throws InvalidInput if the limit is relative and this figure is not finite or 0.
+/// Returns the condition with an absolute limit. A limit relative to the plain voltage step is multiplied by `of_step`, the
+/// figure under this step. Throws InvalidInput if the limit is relative and `of_step` is 0 or not finite.
 [[nodiscard]] Condition beside_step(Condition condition, double of_step);
 
 /// The statistic over simulated devices (process variation) that a search minimises.
 struct RobustMeasure {
-  Risk risk;                       ///< statistic of the devices' costs that a search minimises; not used if `yield` is set
+  Risk risk;                       ///< statistic of the costs of the devices that a search minimises, unless `yield` is set
   std::optional<Condition> yield;  ///< condition; a search maximises the share of devices that fulfil it
   std::string text;                ///< the statistic as the user wrote it
 };

@@ -58,7 +58,7 @@ std::vector<double> volts(const std::vector<Quantity>& quantities, const PullInV
   return values;
 }
 
-/// The values to which percentages and multiples of pull-in voltages in a waveform refer, and the slew limit.
+/// Voltages and slew limit that convert percentages, multiples of pull-in voltages and rise_time = "driver" to SI units.
 struct References {
   std::string_view drive;
   const PullInVoltages& pull_in;
@@ -67,8 +67,8 @@ struct References {
   double before = 0;                                          ///< voltage of the drive before t = 0 [V]
 };
 
-/// Returns in volts a parameter that is a voltage difference. A percentage refers to `base`, the level to which the difference
-/// is added, or for the piezo to the main electrode's hold voltage.
+/// Returns a voltage difference of a waveform in volts. In the scene it may be a percentage of `base`, the level to which the
+/// difference is added; a percentage in a waveform of the piezo is one of the main electrode's hold voltage.
 double swing(const SectionReader& in, std::string_view key, const Quantity& given, const References& to, double base) {
   if (given.dimension != dimension::none || to.drive == dispersion_drive) return volts(given, to.pull_in);
   if (to.drive != piezo_drive) {
@@ -109,7 +109,7 @@ Waveform read_parameters(const SectionReader& in, const References& to) {
       value = swing(in, p.name, in.quantities(p.name).front(), to, base);
     } else if (p.kind == ParameterKind::angular_frequency && in.is_given(frequency_key)) {
       value = 2 * std::numbers::pi * in.number(frequency_key);
-    } else if (in.is_word(p.name)) {  // the only word that a rise time may have is steepest_rise: the rise at max_slew
+    } else if (in.is_word(p.name)) {  // rise_time = "driver" (steepest_rise): rise from `before` to the level at max_slew
       value = std::abs(base - to.before) / to.max_slew;
     } else if (in.has_value(p.name)) {
       value = in.number(p.name);
@@ -139,8 +139,8 @@ Signal compile(const SectionReader& in, const Waveform& waveform, double before)
   }
 }
 
-/// Returns the permitted range of a drive voltage [V]. A multiple of a pull-in voltage must also fit, because resolved scenes
-/// hold its value in volts.
+/// Returns the permitted range of a drive voltage [V]. A voltage that the scene gives as a multiple of Vsp or Vdp must be in
+/// this range as well, because a resolved scene states the voltage in volts and must be valid.
 const Range& any_voltage() {
   static const Range range = Key{.dimensions = {dimension::voltage}}.range_of(dimension::voltage);
   return range;
@@ -227,7 +227,7 @@ std::string_view main_electrode(const Device& device) {
   return {};
 }
 
-/// Reads the waveforms and sources of all drives. Notes on the files that are read are added to `notes`, if not null.
+/// Reads the waveforms and sources of all drives. Adds to `notes`, unless null, a note for the user on every instrument file.
 Drives read_all(const SceneFile::Impl& file, const Device& device, const std::map<std::string, PullInVoltages>& pull_in,
                 LimitChecks checks, std::vector<std::string>* notes = nullptr) {
   std::vector<Drive> drives;
@@ -250,7 +250,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
-    // The scene gives the dispersion force as a factor on it; the value of the drive is this factor minus 1.
+    // In a scene, the waveform of the dispersion force is a factor on the force; the value of the drive is the factor minus 1.
     const double offset = drive == dispersion_drive ? -1 : 0;
     one.begins_closed = in.is_given(before_state_key) && in.text(before_state_key) == closed_state_word;
     if (in.is_given(before_key)) one.before = offset + volts(in.quantities(before_key).front(), known);
@@ -290,7 +290,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 }
 
 /// Returns the hold voltages of all drives, in order, computed as if Vsp and Vdp of the drives in need_pull_in were `volt` [V].
-/// Notes on the files that are read are added to `notes`, if not null.
+/// Adds to `notes`, unless null, a note for the user on every instrument file.
 std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene, double volt, std::vector<std::string>* notes) {
   std::map<std::string, PullInVoltages> pull_in;
   for (const std::string& drive : scene.need_pull_in) pull_in[drive] = {.static_pull_in = volt, .dynamic_pull_in = volt};
@@ -395,8 +395,8 @@ void check_drives(const SceneFile::Impl& file, Scene& scene) {
       if (waveform.keys_in_pull_in_units().empty()) scene.limits_in_pull_in.emplace_back(drive);
     }
   }
-  // The pull-in voltages are not known yet. Reading the waveforms with 1 V instead checks the rules of their families, which do
-  // not depend on the value. A hold level that differs for 1 V and 0.5 V is a multiple of a pull-in voltage.
+  // The pull-in voltages are not known yet, so read the waveforms with 1 V in their place: the rules of the waveform families,
+  // such as the order of times, hold for any value. A hold level that differs for 1 V and 0.5 V is a multiple of Vsp or Vdp.
   scene.standing = levels_held(file, scene, 1, &scene.file_notes);
   scene.begins_closed = begins_closed(file, device);
   if (scene.need_pull_in.empty()) return;

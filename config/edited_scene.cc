@@ -64,7 +64,7 @@ const toml::node* node_at(const toml::table& root, const std::vector<std::string
   return node;
 }
 
-// Returns a value as text in the unit of `written`, the text in the scene that it replaces.
+// Returns the new value of a key as text, in the unit of `written`, the value as the scene states it.
 std::string in_unit_of(const std::string& written, const Quantity& value) {
   constexpr const char* number_begins = "0123456789.eE+-−_";
   std::size_t end = 0;

@@ -18,8 +18,8 @@ struct SceneEdit {
 };
 
 /// Returns the scene's text with the new values, each in the unit of the value that it replaces, to ten digits. A missing key
-/// is added to its section, or with its section at the end, in the SI unit. `name` is the name of the text in messages. Throws
-/// InvalidInput for a text that is not TOML, and where a key cannot be added because its section is an inline table.
+/// is added to its section in the SI unit; a missing section is added at the end of the text. `name` is the name of the text
+/// in messages. Throws InvalidInput for a text that is not TOML, and for a key to be added to an inline table.
 [[nodiscard]] std::string edited_scene(std::string_view text, const std::string& name, const std::vector<SceneEdit>& edits);
 
 /// Returns the text of a scene with the section [spread] (process variation) of another scene, which replaces an existing

@@ -44,7 +44,7 @@ bool is_own(std::string_view content) {
   }
 }
 
-/// Returns the smallest and the largest of the first `count` values.
+/// Returns the smallest and the largest of the first `count` voltages.
 std::pair<double, double> extremes(const std::vector<double>& values, std::size_t count) {
   const auto [least, most] = std::minmax_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
   return {*least, *most};
@@ -76,7 +76,8 @@ double level_before(const SectionReader& in, const Trace& trace, std::size_t cou
   return least == most ? least : std::clamp(sum / static_cast<double>(count), least, most);
 }
 
-// Returns the recorded rows from t = 0 on. If no row is at t = 0, a first row is added there: interpolated, or the first value.
+// Returns the recorded rows from t = 0 on. If no row is at t = 0, adds a first row there with the interpolated voltage, or
+// with the first recorded voltage if the record begins after t = 0.
 FileRows from_zero(const SectionReader& in, const Trace& trace) {
   FileRows rows;
   const auto at_zero = std::find_if(trace.times.begin(), trace.times.end(), [](double time) { return time >= 0; });
@@ -157,7 +158,7 @@ FileRows read_file_rows(const SectionReader& waveform, std::string_view drive, c
     return read_foreign(in, content, path, drive, driver);
   } catch (const InvalidInput& error) {
     const std::string_view what = error.what();
-    if (what.find(in.path()) != std::string_view::npos) throw;  // the message names a key already
+    if (what.find(in.path()) != std::string_view::npos) throw;  // the message already names a key of [waveform.NAME]
     in.file().fail(in.path(file_key), what);
   }
 }

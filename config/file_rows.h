@@ -17,8 +17,8 @@ struct FileRows {
 };
 
 /// Reads the file that [waveform.NAME] names. The numbers of a file written by softland (column time_s) are read bit for bit,
-/// unless the section has keys that describe the file. Other files are read by exchange/; rows of a long file that the
-/// bandwidth of [driver.NAME] makes superfluous are removed. Throws InvalidInput with key and file.
+/// unless the section has keys that describe the file. Other files are read by exchange/. A long file is thinned: rows that
+/// hardly change the voltage after the low-pass filter of [driver.NAME] are removed. Throws InvalidInput with key and file.
 [[nodiscard]] FileRows read_file_rows(const SectionReader& waveform, std::string_view drive, const SectionReader& driver);
 
 }  // namespace softland::internal

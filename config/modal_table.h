@@ -17,7 +17,7 @@ inline constexpr std::string_view file = "file", axis = "axis", direction = "dir
                                   rest_offsets = "rest_offsets", widths = "widths", far_anchor = "far_anchor";
 }  // namespace modal_keys
 
-/// Returns the keys of [structure] that describe the table of modes; a written scene lists them before the other keys.
+/// Returns the keys of [structure] that describe the table of modes: its file, or frequencies, positions and shapes.
 [[nodiscard]] std::vector<Key> modal_table_keys();
 
 /// Sets the table of modes, length, width and number of modes of the structure. A file of another program adds a note to the

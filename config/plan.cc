@@ -24,7 +24,8 @@ namespace {
 
 constexpr std::uint64_t most_searched = 10'000'000;
 
-/// Returns read(). An InvalidInput that it throws gets the source of the plan's entry (option, or file and line) in front.
+/// Returns read(). If read() throws InvalidInput, puts the place of the plan's entry (option, or file and line) in front of the
+/// message.
 template <class Read>
 auto at_place(const PlanRequest& request, std::string_view key, std::size_t number, Read&& read) {
   try {

@@ -55,7 +55,7 @@ struct PlanRequest {
 void read_list(PlanRequest& request, const std::string& path);
 /// Adds options of the study of every point, such as "impact-velocity=1 mm/s". Throws InvalidInput.
 void add_options(PlanRequest& request, const std::vector<std::string>& told);
-/// Options of the study that a plan file gives by keys of [plan]; its list `options` gives all others.
+/// Options of the study that are keys of [plan] in a plan file; all other options are in the list `options` of [plan].
 inline constexpr std::string_view plan_options[] = {"certify",  "samples",   "target", "actuator",
                                                     "waveform", "optimizer", "budget"};
 
@@ -63,7 +63,7 @@ inline constexpr std::string_view plan_options[] = {"certify",  "samples",   "ta
 struct PlanKey {
   std::string path;         ///< path of the key in the scene, such as "electrode.main.span"
   std::size_t element = 0;  ///< number of the list element that varies, from 1; 0 for a key without a list
-  Quantity base = {};       ///< value of the key in the scene, which a variable that is a factor multiplies
+  Quantity base = {};       ///< value of the key in the scene; the variable multiplies this value if it is a factor
 };
 
 /// A variable of the plan: sets one key of the scene, or multiplies the values of several keys by one factor.
@@ -73,7 +73,8 @@ struct PlanVariable {
   Dimension dimension = {};  ///< dimension of the variable's values; none for a factor
   bool is_factor = false;    ///< true when the variable multiplies the scene's own numbers
   bool is_whole = false;     ///< true when the variable takes whole numbers only
-  /// Words of a varied choice or flag; the variable's value is the number of a word, from 1.
+  /// Words of a varied key whose value is a word, such as a contact law, or true and false. The variable's value is the number
+  /// of a word, counted from 1.
   std::vector<std::string> words = {};
   std::vector<double> values = {};         ///< values of the variable on a grid [SI unit of `dimension`]
   double low = 0, high = 0;                ///< range of the variable, unless it has `values` [SI unit of `dimension`]
@@ -122,7 +123,7 @@ class Plan {
   std::string pareto_;
   std::vector<PlanVariable> variables_;
   std::vector<std::vector<double>> rows_;  // values of a list of points, by row and variable [SI unit]
-  std::optional<PointSet> sample_;         // kind of point set; also set for a Pareto search, whose variables have ranges
+  std::optional<PointSet> sample_;         // kind of point set; in a Pareto search it only marks that variables have ranges
   bool is_search_ = false;
   std::uint64_t points_ = 1;
   std::optional<SamplePoints> sampled_;

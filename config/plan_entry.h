@@ -23,7 +23,7 @@
 namespace softland::internal {
 
 inline constexpr std::string_view plan_section = "plan";
-inline constexpr std::uint64_t most_values = 10'000'000;  // most values of a variable, or rows of a list of points
+inline constexpr std::uint64_t most_values = 10'000'000;  // largest number of values of a variable, or of rows of a list
 
 inline std::vector<std::string> split_trimmed(std::string_view text, char at) {
   std::vector<std::string> parts = split(text, at);
@@ -83,8 +83,8 @@ class KeyFinder {
     std::optional<Quantity> base = {};  ///< value of the key in the scene
   };
 
-  /// Finds the scene's keys that an entry of a plan names. Throws InvalidInput whose message states the broken rule, without
-  /// the entry.
+  /// Finds the key of the scene that `name` names, such as "electrode.main.span[2]". Throws InvalidInput; the caller adds the
+  /// place of the plan's entry to the message.
   [[nodiscard]] Found find(const std::string& name) const {
     Found found{.key = {.path = name}};
     if (const std::size_t bracket = name.rfind('['); bracket != std::string::npos && name.ends_with(']')) {
@@ -152,7 +152,7 @@ class KeyFinder {
   const SceneFile::Impl& file_;
 };
 
-/// Reads one entry of a plan into a variable; `name` is its text before "=".
+/// Reads one entry KEY=VALUES of a plan into a variable; `name` is the text before "=".
 class EntryReader {
  public:
   EntryReader(const KeyFinder& finder, const std::string& name) {
@@ -167,7 +167,7 @@ class EntryReader {
     variable_.is_whole = type == KeyType::integer;
   }
 
-  /// Reads the values A,B,C of an entry of a plan: words of a choice, or numbers.
+  /// Reads the values A,B,C of an entry of a plan: numbers, or words for a key whose value is a word, true or false.
   PlanVariable of_list(const std::vector<std::string>& texts) && {
     const KeyType type = keys_.front().schema->type;
     if (type == KeyType::choice || type == KeyType::flag) {
@@ -178,8 +178,8 @@ class EntryReader {
     return finish();
   }
 
-  /// Reads the range of an entry of a plan: LOW:HIGH:N for a grid or, if `is_sample`, LOW:HIGH for a sampled box. The suffix
-  /// :log selects equal ratios.
+  /// Reads the range of an entry of a plan: LOW:HIGH:N for N values on a grid or, if `is_sample`, LOW:HIGH for a variable that
+  /// a point set samples. The suffix :log selects equal ratios instead of equal steps.
   PlanVariable of_range(std::vector<std::string> parts, bool is_sample) && {
     const KeyType type = keys_.front().schema->type;
     require(type != KeyType::choice && type != KeyType::flag, [&] {
@@ -226,7 +226,7 @@ class EntryReader {
     if (variable_.is_whole) require_whole(*count);
   }
 
-  /// Checks that equal steps from one whole number to another give whole numbers: the number of steps must divide the range.
+  /// Checks that the `count` evenly spaced values of a whole-number variable are whole: count - 1 must divide the range.
   void require_whole(std::uint64_t count) const {
     if (count == 1) return;
     const auto way = static_cast<std::uint64_t>(std::abs(variable_.high - variable_.low));
@@ -264,8 +264,8 @@ class EntryReader {
     const Dimension given = all.front().dimension;
     const std::vector<Dimension>& allowed = keys_.front().schema->dimensions;
     const std::optional<Quantity>& base = keys_.front().base;
-    // A percentage of a position on the beam is a factor if the scene gives the position as a length; otherwise the scene and
-    // the plan both give shares of the beam's length.
+    // If the scene gives a position on the beam as a length, a percentage in the plan is a factor on this length. If the scene
+    // gives a percentage of the beam's length, so does the plan.
     const bool is_of_value = keys_.front().schema->bound.place != nullptr && given == dimension::none && is_percent && base &&
                              base->dimension != dimension::none;
     const bool fits = variable_.is_whole

@@ -118,7 +118,7 @@ class PlanReader {
     }
   }
   [[nodiscard]] PlanRequest::Place place() const {
-    // The function returned here is called after this reader and its file are destroyed, so it owns the sources of the entries.
+    // The returned function outlives this reader and its file, so it holds copies of the lines (file, line, text) of [plan].
     std::map<std::string, std::string, std::less<>> places;
     for (const auto& [key, node] : *find_section()) {
       const std::string at = path(key.str());

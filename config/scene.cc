@@ -196,8 +196,8 @@ void warn_of_fixed_sections(const SceneFile::Impl& file, const DeviceSpread& spr
   }
 }
 
-/// Returns the sections of the scene as one table: those in the file, and those whose defaults apply without a section. The
-/// function keys_of(reader) returns the keys of a section. [spread] (process variation) is that of resolved_spread().
+/// Returns the sections of the scene as one TOML table: those in the file, and those whose defaults apply without a section.
+/// keys_of(reader) must return the keys of a section, for example with_defaults(). resolved_spread() gives [spread].
 template <class KeysOf>
 toml::table sections_of(const SceneFile::Impl& file, KeysOf&& keys_of) {
   toml::table root;

@@ -58,14 +58,15 @@ class SceneFile {
   void erase(const std::string& path);
   /// Replaces [waveform.DRIVE] by this waveform in volts and seconds, with digits that read back to the same bits. The rows of
   /// a Table are written into the scene. The keys before and before_state keep their values. Throws InvalidInput for a waveform
-  /// outside the rules of its family.
+  /// whose parameters are invalid, such as times in the wrong order.
   void set_waveform(const std::string& drive, const Waveform& given);
 
-  /// Removes the line numbers of all keys of the scene, for a text that the user has not written: messages then give its name
-  /// only.
+  /// Removes the line numbers of all keys of the scene, so that messages give the name of the scene only: a program wrote the
+  /// text, and the user has no file with these lines.
   void forget_places();
 
-  /// Returns the same scene under another name: its text is written and read again, and an added contact is kept.
+  /// Returns a copy with `name` as the name of the file in messages. The text is written and read again, so that line numbers
+  /// are those of the written text; a contact from add_contact() is copied.
   [[nodiscard]] SceneFile again(std::string name) const;
   /// Returns the scene as TOML text: parsing the text again gives the same scene, digit for digit. Throws InvalidInput for a
   /// scene to which a contact was added.
@@ -113,17 +114,17 @@ inline constexpr double default_max_voltage = 1.5;
 /// The names of the piezo and of the dispersion force among the drives.
 inline constexpr std::string_view piezo_drive = "piezo", dispersion_drive = "dispersion";
 
-/// One drive of a switch: an electrode or the piezo, with its voltages. The dispersion force is a drive as well. Its waveform
-/// is the factor on the force minus 1, so that 0 means no actuation for every drive.
+/// One drive of a switch: an electrode or the piezo, with its voltages. The dispersion force is a drive as well: its "voltage"
+/// is the factor on the force minus 1, so that 0 leaves the force unchanged, as 0 V leaves an electrode without actuation.
 struct Drive {
   std::string name = {};                  ///< name of the drive: an electrode, piezo_drive or dispersion_drive
-  std::optional<Waveform> waveform = {};  ///< voltage waveform of the drive; not set: 0 V
-  std::optional<double> before = {};      ///< voltage before t = 0 that the scene gives [V]; not set: 0 V
+  std::optional<Waveform> waveform = {};  ///< voltage waveform of the drive; none: 0 V at all times
+  std::optional<double> before = {};      ///< voltage before t = 0 that the scene gives [V]; none: 0 V
   bool begins_closed = false;             ///< true when the drive's key before_state is closed: see Scene::begins_closed
   /// Limits of the source; none if unlimited. Without given limits, electrodes of known Vdp have [0, default_limit()].
   std::optional<DriverLimits> limits = {};
   DriverModel source = {};               ///< voltage source, ideal by default; prepare() adds its load
-  std::optional<double> amplifier = {};  ///< gain of an amplifier between source and switch; voltages are those at the switch
+  std::optional<double> amplifier = {};  ///< gain of an amplifier after the source; all voltages here are those after it
   SourceErrors errors = {};              ///< errors of the source: gain, offset and delay
 
   [[nodiscard]] double hold_level() const;                                  ///< voltage that the waveform keeps at its end [V]
@@ -169,8 +170,8 @@ struct SimulateOptions {
   double accuracy = 1e-6;  ///< target relative error of initial contact time, impact velocity and highest rebound
   double tolerance = 0;    ///< relative tolerance of the integrator; 0: derived from accuracy
   double open_at = std::numeric_limits<double>::quiet_NaN();  ///< time of the command to open [s]; NaN: see open_command()
-  bool automatic_effects = false;  ///< true to leave out physical effects that change no figure by more than effects_tolerance
-  /// Relative change of first contact time, impact velocity or highest rebound above which a physical effect is kept.
+  bool automatic_effects = false;  ///< true to leave physical effects (force laws) out of the model: see effects_tolerance
+  /// An effect stays in the model if it changes first contact time, impact velocity or highest rebound by a larger share.
   double effects_tolerance = 1e-3;
 };
 
@@ -201,7 +202,7 @@ inline constexpr std::array measurement_names{measured_pull_in, measured_frequen
 /// Voltage of the step whose closing time is measured, as a multiple of the nominal Vdp. The switch closes slowly under so low
 /// a voltage, so that the time depends on the same properties of the device as a closing with a soft impact.
 inline constexpr double closing_step = 1.2;
-/// Default standard deviation of a measured closing time: that of a generator and an oscilloscope [s].
+/// Default standard deviation of a measured closing time [s]: typical timing error of a generator and an oscilloscope.
 inline constexpr double usual_time_error = 50e-9;
 inline constexpr int most_classes = 256;
 namespace internal {
@@ -212,7 +213,7 @@ struct Scene {
   std::string title;
   Device device;
   SimulateOptions simulate;
-  /// True for modes = "auto": studies/closing/auto_modes.h chooses the number of modes; until then `device` has the default.
+  /// True for modes = "auto": studies/closing/auto_modes.h chooses the number of modes; read_scene() sets the default number.
   bool auto_modes = false;
   MetricsOptions metrics;
   DeviceSpread spread;
@@ -224,15 +225,15 @@ struct Scene {
   std::vector<std::string> need_pull_in;
   /// Names in need_pull_in of the electrodes of which only the voltage limits are in multiples of Vsp or Vdp.
   std::vector<std::string> limits_in_pull_in = {};
-  /// Voltage of each drive while the pull-in voltages of another drive are computed, in the order of Switch::drives(). It is
-  /// the hold voltage if that does not depend on Vsp or Vdp, otherwise 0 V; for the dispersion force, the factor on it minus 1.
+  /// Constant voltage of each drive while the pull-in voltages of another drive are computed, in the order of Switch::drives():
+  /// the hold voltage if it does not depend on Vsp or Vdp, otherwise 0 V. For the dispersion force, the factor on it minus 1.
   std::vector<double> standing;
   std::vector<std::string> file_notes = {};  ///< notes for the user on files of instruments, one line each
   std::vector<std::string> warnings;
   SceneFile file;
 
-  /// Returns waveforms and limits of all drives in volts. `pull_in` must hold every electrode of need_pull_in; other electrodes
-  /// that it lacks have no default voltage limit. Throws InvalidInput for a waveform outside the rules of its family or outside
+  /// Returns waveforms and limits of all drives in volts. `pull_in` must hold every electrode of need_pull_in; an electrode
+  /// that `pull_in` lacks has no default voltage limit. Throws InvalidInput for a waveform with invalid parameters or outside
   /// the limits of its source.
   [[nodiscard]] Drives drives(const std::map<std::string, PullInVoltages>& pull_in) const;
 };
@@ -241,9 +242,9 @@ struct Scene {
 /// message has file, line, key path, value, rule and, for an unknown key, the nearest valid key.
 [[nodiscard]] Scene read_scene(const SceneFile& file);
 
-/// Returns the scene with every default written out and every voltage in volts. A value without a fixed default, such as a
-/// duration that is chosen, is not written. Throws InvalidInput as Scene::drives does. Messages about the result name the file
-/// "NAME (resolved)", because its lines differ from those of the file.
+/// Returns the scene with every default written out and every voltage in volts. A value that the simulation chooses, such as
+/// simulate.duration if not given, is not written. Throws InvalidInput as Scene::drives() does. Messages about the result name
+/// the file "NAME (resolved)", because its lines differ from those of the file.
 [[nodiscard]] SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltages>& pull_in);
 
 /// Returns the canonical form of a scene: every default is written out, quantities are in SI units or multiples of pull-in

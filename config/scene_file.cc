@@ -73,13 +73,14 @@ const toml::node* SceneFile::Impl::find(const std::vector<std::string>& path) co
 
 SceneFile::Impl::Origin SceneFile::Impl::origin(std::string_view path) const {
   if (const auto exact = origins.find(path); exact != origins.end()) return exact->second;
-  // A key without an origin of its own has that of the value that contains it, such as an option that set a whole section.
+  // A key without a recorded origin (file and line, or option) has the origin of the innermost value that contains the key, for
+  // example the option that set its whole section.
   const Origin* nearest = nullptr;
   for (const auto& [known, place] : origins) {
-    if (is_below(path, known)) nearest = &place;  // sorted by path: the last match is the innermost value
+    if (is_below(path, known)) nearest = &place;  // the paths are sorted, so the last match is the innermost value
   }
   if (nearest) return *nearest;
-  // A section that exists only because an option set one of its keys has the origin of this key.
+  // A section that exists only because an option set one of its keys has that option as its origin.
   for (const auto& [known, place] : origins) {
     if (is_below(known, path)) return place;
   }
@@ -249,7 +250,7 @@ void SceneFile::set(std::string_view assignment) {
   } catch (const InvalidInput&) {
     parsed.clear();
   }
-  if (parsed.size() != 1) {  // the text is not TOML, or a line break in it begins a second key
+  if (parsed.size() != 1) {  // not a single TOML value (a line break may begin a second key): read the text as a string
     try {
       parsed = internal::parse_value(internal::toml_string(value));
     } catch (const InvalidInput&) {
@@ -314,7 +315,7 @@ void SceneFile::erase(const std::string& path) {
 void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
   if (const Own* own = std::get_if<Own>(&given))
     throw InvalidInput(fmt::format("waveform.{}: {} cannot be written into a scene file", drive, described(*own)));
-  static_cast<void>(signal(given));  // check that the waveform obeys the rules of its family, so that the scene stays readable
+  static_cast<void>(signal(given));  // throw for invalid parameters, which read_scene() would refuse in the written scene
   const bool is_factor = drive == dispersion_drive;
   const Waveform waveform = is_factor ? internal::raised(given, 1) : given;
   toml::table table{{"family", std::string(family(waveform))}};

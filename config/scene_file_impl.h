@@ -65,7 +65,7 @@ struct SceneFile::Impl {
   struct Origin {
     std::string text;  ///< source of the key's value: "scenes/x.toml:12" or "--set gap.contact=3"
     bool is_option = false;
-    std::string replaced = {};  ///< path of the older value that setting this key removed; empty if none
+    std::string replaced = {};  ///< path of the alternative key (accuracy, tolerance) that was removed; empty if none
   };
 
   std::string name;
@@ -96,7 +96,7 @@ struct SceneFile::Impl {
                                          const std::string& option) const;
   /// Returns NAME of every [section.NAME], sorted. Throws InvalidInput if the section holds anything else.
   [[nodiscard]] std::vector<std::string> names_in(const std::string& section) const;
-  /// Returns true if the scene file has the section as [section.NAME].
+  /// Returns true if the scene file has subsections [section.NAME] of this section, instead of a single [section].
   [[nodiscard]] bool is_named(const internal::Section& section) const;
 
   /// Sets the value at a path of keys, with `place` as the source of the value, and creates missing sections. If a quantity can

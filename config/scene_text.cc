@@ -26,7 +26,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
     if (text[i] == '\\' && quote == '"') {
       ++i;
     } else if (is_multiline && text.substr(i).starts_with(triple)) {
-      const auto rest = text.find_first_not_of(quote, i);  // a TOML string may end with two quotes before the closing three
+      const auto rest = text.find_first_not_of(quote, i);  // up to two quotes of the content may precede the closing three
       return rest == std::string_view::npos ? text.size() : rest;
     } else if (!is_multiline && (text[i] == quote || text[i] == '\n')) {
       return i + 1;

@@ -1,5 +1,5 @@
-// The table of all sections and keys of a scene. The table determines reading, checks, hints, defaults and the order of written
-// scenes.
+// The table of all sections and keys of a scene. The table determines how scenes are read and checked, which key an error
+// suggests for an unknown one, the defaults, and the order of the keys in written scenes.
 #pragma once
 
 #include <cstddef>
@@ -30,8 +30,8 @@ struct Section;
 enum class KeyType { text, texts, flag, integer, choice, quantity, quantities, table, tables };
 
 /// Access to the member of a scene that a key sets: the function for the type of the key's value is set, the others are null. A
-/// key with two types of values has two functions. The second argument of the functions is the index of the electrode, the
-/// contact, or the table in a list of tables; `element` is the index in a list of numbers.
+/// key whose value may have two types has two functions. The functions' second argument is the index of the electrode, of the
+/// contact, or of the table in a list of tables; `element` is the index in a list of numbers.
 struct Bound {
   double& (*number)(Scene&, std::size_t) = nullptr;
   Place& (*place)(Scene&, std::size_t, std::size_t element) = nullptr;
@@ -45,11 +45,12 @@ struct Bound {
 struct Key {
   std::string_view name;
   KeyType type = KeyType::quantity;
-  /// Permitted dimensions of the key's value; empty in [spread], where the varied key decides. The first gives the SI unit.
+  /// Permitted dimensions of the key's value; the first gives the SI unit. Empty for a key of [spread] whose value must have
+  /// the dimension of the key that varies.
   std::vector<Dimension> dimensions = {};
   Range range = {};         ///< permitted values of the key; see range_of()
   std::size_t count = 0;    ///< type `quantities`: number of list elements; 0 for any number
-  bool any_word = false;    ///< type `integer`: true if any text may replace the number
+  bool any_word = false;    ///< type `integer`: true if a text, such as the name of a column, may replace the number
   bool may_be_one = false;  ///< type `quantities`: true if a single quantity may replace the list
   bool is_nested = false;   ///< type `quantities`: true if the value may be a list of lists, which are read in sequence
   std::vector<std::string_view> choices = {};
@@ -81,8 +82,8 @@ struct Key {
   /// Returns a valid value of this dimension for messages, such as "2 um": the example of the key, its default, or a usual
   /// value of the dimension.
   [[nodiscard]] std::string example_of(const Dimension& dimension) const;
-  /// Returns the permitted range of a value of the key in this dimension. An end that `range` leaves open is that of the
-  /// dimension.
+  /// Returns the permitted range of a value of the key in this dimension. Where `range` has no bound, the smallest or largest
+  /// permitted value of the dimension is the bound.
   [[nodiscard]] Range range_of(const Dimension& dimension) const;
   /// Returns true if the key has no dimension; a TOML number is then accepted as well as a text.
   [[nodiscard]] bool is_bare_number() const;
@@ -97,9 +98,9 @@ struct Advice {
 struct Section {
   std::string_view name;         ///< name of the section of a scene; empty for the keys above the first section
   std::string_view entry = {};   ///< NAME of the [section.NAME] to which these keys apply; empty: every other NAME
-  bool is_named = false;         ///< true if the scene has [name.NAME], any number of them
-  bool may_be_named = false;     ///< true if the scene has [name], or several [name.NAME]
-  std::string_view beside = {};  ///< key in [name] itself, next to sections [name.NAME]; separate code reads it
+  bool is_named = false;         ///< true if a scene may have any number of sections [name.NAME]
+  bool may_be_named = false;     ///< true if a scene may have either one [name] or any number of [name.NAME]
+  std::string_view beside = {};  ///< key that may be in [name] itself besides sections [name.NAME]; not one of `keys`
   bool required = false;
   bool always_in_force = false;    ///< true if the defaults of the keys apply even without the section
   bool may_vary = false;           ///< true when [spread] (process variation) may vary numbers of this section
@@ -107,14 +108,15 @@ struct Section {
   std::vector<Key> keys = {};
   std::string_view about = {};
   std::vector<Advice> advice = {};  ///< advice for unknown keys of the section; a message shows the first that applies
-  /// Creates the part of the scene that the section describes; `name` is NAME of [section.NAME]. Returns its index among the
-  /// electrodes or contacts. Null if separate code reads the keys, as for waveforms, drivers and spread.
+  /// Creates the part of the scene that the section describes, for example an electrode; `name` is NAME of [section.NAME].
+  /// Returns the index of the electrode or contact, else 0. Null for waveforms, drivers and spread: config/drives.h and
+  /// config/spread_reader.h read their keys.
   std::size_t (*begin)(Scene& scene, const SectionReader& in, std::string_view name) = nullptr;
   /// Checks rules between several keys of the section, after all keys are set. Throws InvalidInput.
   void (*check)(Scene& scene, const SectionReader& in, std::size_t entry) = nullptr;
 
-  /// Returns the description of a key by its name, or null. If several keys have this name, returns the one that exists for
-  /// `choice` of the selector.
+  /// Returns the description of the key of this name, or null. If several keys have the name, returns the key that exists when
+  /// the value of the selector is `choice`.
   [[nodiscard]] const Key* find(std::string_view key, std::string_view choice = {}) const;
 };
 

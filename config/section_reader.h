@@ -67,7 +67,7 @@ class SectionReader {
   [[nodiscard]] std::vector<std::string_view> keys_in_pull_in_units() const;
   /// Returns every key that has a value, with its TOML value as written or by default.
   [[nodiscard]] toml::table with_defaults() const;
-  /// Returns every key that has a value, with quantities in SI units, so that equal values have equal texts.
+  /// Returns every key that has a value, with quantities in SI units: "2 um" and "2000 nm" become the same text.
   [[nodiscard]] toml::table in_si_units() const;
 
   /// Sets the members of the scene that the keys of the section describe; `entry` is the number of the electrode or contact.
@@ -79,8 +79,8 @@ class SectionReader {
   }
   /// Throws InvalidInput about the section with the text `rule`.
   [[noreturn]] void fail(std::string_view rule) const { file_.fail_section(path_, rule); }
-  /// Throws InvalidInput about `key` if its law needs the optional key `needed` of [structure], such as width, and it is
-  /// missing.
+  /// Throws InvalidInput about `key` if the optional key `needed` of [structure], such as width, is missing. The caller has
+  /// found that the law of this section needs that number.
   void require_of_structure(std::string_view key, std::string_view needed, const Structure& structure) const;
   /// Throws InvalidInput unless the two positions of `key` increase and are on the beam.
   void require_on_beam(std::string_view key, const Structure& beam) const;

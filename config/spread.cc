@@ -75,7 +75,7 @@ std::function<std::string(double)> refusal_outside(const Range& range, const std
 struct DriveErrorRow {
   DriveError value;
   std::string_view name;
-  double nominal;  // value of the error if the scene does not give it [SI unit]
+  double nominal;  // value of the source's error in the nominal design if the scene gives none [SI unit]
   Dimension dimension;
 };
 constexpr std::array drive_errors{
@@ -146,7 +146,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
     for (const Key& key : of_key.keys()) {
       const std::size_t size =
           key.bound.element != nullptr && of_key.has_value(key.name) ? of_key.quantities(key.name).size() : 0;
-      // An element of a list that cannot vary is a candidate too, so that the message below gives the reason of the list.
+      // A list that cannot vary is a candidate too, so that the message below says why it cannot, not that the key is unknown.
       const bool is_fixed_list = key.type == KeyType::quantities && !key.why_fixed.empty();
       const bool is_number =
           is_fixed_list                   ? true
@@ -200,7 +200,8 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
                                            hint(parts.back(), candidates)));
 }
 
-/// Converts the numbers of an entry of [spread] to the unit of its variable: the unit of its single key, or a factor.
+/// Converts the numbers of an entry of [spread], such as a standard deviation, to the unit of the varied quantity: the SI unit
+/// of the varied key, or none if the quantity is a factor on the keys.
 class EntryUnits {
  public:
   EntryUnits(const SectionReader& in, const std::vector<FoundKey>& keys) : in_(in), keys_(keys) {
@@ -234,7 +235,7 @@ class EntryUnits {
     return is_factor_ || q.dimension != dimension::none ? q.value : q.value * keys_.front().varied.nominal;
   }
   [[nodiscard]] double of(std::string_view key) const { return of(in_.quantities(key).front()); }
-  /// Returns the absolute value of a key that gives a width, such as a standard deviation.
+  /// Returns the absolute value of a key that gives the width of a distribution, such as its standard deviation.
   [[nodiscard]] double width(std::string_view key) const { return std::abs(of(key)); }
   [[nodiscard]] double of(std::string_view key, double otherwise) const { return in_.is_given(key) ? of(key) : otherwise; }
 
@@ -372,7 +373,7 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
                                          varied.unit.empty() ? "" : ": give it a standard_deviation in " + varied.unit));
     }
     if (varied.drive && varied.drive->error == DriveError::jitter) {
-      // The value of this variable for a device seeds the random delays of its edges. It is no delay, so any value is valid.
+      // The value of a jitter variable on a device is the seed of random delays, not a delay itself, so any value is valid.
       variable.is_drawn_per_edge = true;
       key.varied.refusal = [](double) { return std::string(); };
     }

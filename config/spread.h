@@ -41,8 +41,8 @@ struct VariedKey {
   double nominal = 0;          ///< value of the varied key in the scene, the nominal design
   Dimension measured_in = {};  ///< dimension in which the key varies, one of those that the key may have
   double weight = 1;           ///< if SpreadVariable::is_added: factor on the amount that is added to the nominal value
-  /// Returns the member of a scene that the varied key sets. Null if the key does not set a single number: the scene must then
-  /// be read again to give a device its value.
+  /// Returns the member of a scene that the varied key sets. Null if the key does not set a single number: the scene of a
+  /// device must then be read from its text with the device's value.
   std::function<double&(Scene&)> member;
   /// Error of a drive's voltage source, if the varied number is such an error; Scene has no member for it.
   std::optional<VariedDrive> drive;
@@ -57,7 +57,7 @@ struct VariedKey {
 struct SpreadVariable {
   std::string name;  ///< name of the quantity's entry in [spread]
   std::vector<VariedKey> keys;
-  /// true: the variable multiplies the values of its keys; false, unless is_added: it replaces the value of its one key.
+  /// true: the variable multiplies the values of its keys; false, unless is_added: the keys take the variable's value.
   bool is_factor = true;
   bool is_added = false;  ///< true: the variable times the weight of each key is added to the key's value
   Distribution distribution;
@@ -77,7 +77,7 @@ struct DeviceSpread {
   [[nodiscard]] bool empty() const { return variables.empty(); }
   /// Returns true when errors of the drives' voltage sources vary.
   [[nodiscard]] bool varies_drives() const;
-  /// Removes a varied quantity and its correlations.
+  /// Removes a varied quantity and its correlations, so that the quantity no longer varies.
   void leave_out(std::size_t variable);
   /// Sets the correlation matrix of the varied quantities. Throws InvalidParameter as GaussianCopula does.
   void correlate(const Eigen::MatrixXd& matrix);

@@ -20,7 +20,7 @@ struct Symbol {
   Dimension dimension;
   int exponent = 0;  ///< the unit is factor * 10^exponent SI units
   bool takes_prefix = false;
-  double factor = 1;  ///< the rest of the size of the unit beside the power of ten
+  double factor = 1;  ///< size of the unit divided by the power of ten [SI unit]
 };
 
 constexpr std::array symbols{
@@ -182,15 +182,15 @@ int parse_power(std::string_view text, std::string_view factor) {
   return power;
 }
 
-/// Returns true when the last digit of this factor of a unit is a power of a length: "m3" is a volume. No symbol of a unit ends
-/// with a digit.
+/// Returns true when a factor of a unit is a length with a digit as its power, such as "m3" for m^3. No symbol of a unit ends
+/// with a digit, so that the digit cannot belong to the symbol.
 bool has_digit_power(std::string_view factor) {
   if (factor.empty() || factor.back() < '2' || factor.back() > '9') return false;
   const auto unit = look_up(factor.substr(0, factor.size() - 1));
   return unit && unit->dimension == dimension::length;
 }
 
-/// Multiplies `scale` by one factor of a unit, such as "um^2" or "um2", raised to `sign`.
+/// Multiplies `scale` by a factor of a unit, such as "um^2" or "um2", if `sign` is 1; divides by it if `sign` is -1.
 void apply_factor(UnitScale& scale, std::string_view factor, int sign) {
   const auto caret = factor.find('^');
   const auto end = has_digit_power(factor) ? factor.size() - 1 : caret;
@@ -211,7 +211,7 @@ void apply_factor(UnitScale& scale, std::string_view factor, int sign) {
   if (unit->factor != 1) scale.factor *= std::pow(unit->factor, power);
 }
 
-/// Multiplies `scale` by the factors of a unit, joined by blanks or single asterisks, each raised to `sign`.
+/// Multiplies `scale` (`sign` 1) or divides it (`sign` -1) by the factors of a unit, joined by blanks or single asterisks.
 void apply_factors(UnitScale& scale, std::string_view text, int sign, std::string_view unit) {
   while (true) {
     const auto star = text.find('*');

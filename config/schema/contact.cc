@@ -45,8 +45,8 @@ Key conduction_key(std::string_view name, const Dimension& dimension, Range rang
   return key;
 }
 
-// Returns the keys of the resistance of the closed contact (model/contact/resistance.h). A contact law that needs a hardness
-// has a separate key for the hardness.
+// Returns the keys of the resistance of the closed contact (model/contact/resistance.h). The key hardness is for contact laws
+// that have no parameter of this name.
 std::vector<Key> conduction_keys() {
   Key hardness =
       conduction_key<&Conduction::hardness>("hardness", dimension::pressure, positive,
@@ -97,14 +97,14 @@ std::vector<Key> contact_keys() {
 void check_pad_length(const Device& d, const Contact& c, const SectionReader& in) {
   const bool per_area = acts_per_area(c.model);
   if (!in.is_given("pad_length")) {
-    if (d.structure.is_rigid() && !per_area) return;  // a plate needs the length only for a law per area
+    if (d.structure.is_rigid() && !per_area) return;  // for a plate, only a contact law per area needs the pad length
     in.fail(R"(missing key 'pad_length' (a length such as "2 um"))");
   }
   if (per_area && !in.is_given("pad_width")) in.require_of_structure("pad_length", "width", d.structure);
   in.require(c.pad_length < d.structure.length, "pad_length", "must be less than " + in.written_length(d.structure));
 }
 
-/// Checks the name and the gap, keys that a contact has only if the scene has several contacts.
+/// Checks the name and the key `gap` of contact number k in a scene with sections [contact.NAME].
 void check_named(const Device& d, std::size_t k, const SectionReader& in) {
   const Contact& c = d.contacts[k];
   constexpr std::size_t longest = 64;
@@ -113,7 +113,7 @@ void check_named(const Device& d, std::size_t k, const SectionReader& in) {
   if (!in.is_given("gap")) in.fail(R"(missing key 'gap' (a length such as "2 um"))");
   const double own = in.number("gap");
   const SectionReader gap(in.file(), "gap");
-  constexpr double most = 0.99;  // largest share of the electrode gap, as in check_gap()
+  constexpr double most = 0.99;  // largest gap of the contact as a share of the electrode gap, as in check_gap()
   in.require(c.side == Side::far || own < most * d.gap.electrode, "gap",
              fmt::format("must be less than {:g} times {}", most, gap.written("electrode")));
 }

@@ -35,7 +35,7 @@ Landing& landing(Scene& scene, std::size_t k) {
 }
 using OfLanding = Of<landing>;
 
-// Any key of the asperities may be the first that is set, so each of them creates the asperities if they do not exist.
+// The keys of the asperities are set in any order, so the setter of each key creates the asperities if they do not exist.
 UniformAsperities& asperities(Scene& scene, std::size_t k) {
   std::optional<UniformAsperities>& one = landing(scene, k).asperities;
   if (!one) one.emplace();
@@ -140,7 +140,7 @@ void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
 void check_fringing(const Structure& s, const Electrode& e, const SectionReader& in) {
   const FringingRow& law = row_of(fringing_laws, e.fringing);
   const SectionReader structure(in.file(), "structure");
-  // A beam built of sections has local thicknesses, which the fringing field uses; it need not have structure.thickness.
+  // In a beam built of sections, the fringing field uses the thickness of each section; structure.thickness may be missing.
   const bool lacks_thickness = law.needs_thickness && std::isnan(s.thickness) && !s.is_built();
   const std::string fringing =
       fmt::format("fringing = {}{}", toml_string(law.name), in.is_given("fringing") ? "" : ", the default,");
@@ -175,7 +175,7 @@ void check_landing(Device& d, const Electrode& e, const SectionReader& in) {
     gap.require(std::abs(d.gap.contact - plane) <= 1e-9 * d.gap.electrode, "contact",
                 "must be omitted or " + engineering(plane, "m") + ", where the landing begins");
   }
-  if (!has_contacts) d.gap.contact = plane;  // if the scene has other contacts, check_metrics() adds this one
+  if (!has_contacts) d.gap.contact = plane;  // a scene with other contacts gets the face as a contact in check_metrics()
 }
 
 void check_electrode(Scene& scene, const SectionReader& in, std::size_t k) {

@@ -13,7 +13,7 @@ namespace {
 Gap& gap(Scene& scene, std::size_t) { return scene.device.gap; }
 using OfGap = Of<gap>;
 
-/// Returns true if every electrode has a dielectric, on which a plate may come to rest.
+/// Returns true for a plate whose electrodes all have a dielectric: the plate may then close onto the dielectric.
 bool may_land(const Structure& structure, const SceneFile::Impl& file) {
   const std::vector<std::string> electrodes = file.names_in("electrode");
   return structure.is_rigid() && !electrodes.empty() && std::ranges::all_of(electrodes, [&](const std::string& name) {
@@ -35,7 +35,7 @@ void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
     in.require(!in.is_given("contact"), "contact", "belongs to a single [contact]: every [contact.NAME] has its own gap");
     return;
   }
-  if (has_landing(in.file())) return;  // check_landing() sets the contact gap to the face of the dielectric
+  if (has_landing(in.file())) return;  // check_landing() sets the contact gap to the rest distance of the dielectric's face
   if (!in.is_given("contact")) in.fail(R"(missing key 'contact' (a length such as "2 um"))");
   if (gap.contact <= gap.electrode && may_land(scene.device.structure, in.file())) {
     in.require(!scene.device.lands_on_dielectric() || in.file().find({"dispersion"}) == nullptr, "contact",

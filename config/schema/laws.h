@@ -23,7 +23,7 @@ template <auto part, class Law, std::size_t i>
 [[nodiscard]] double& bound_number(Scene& scene, std::size_t entry) {
   return *number_of(part(scene, entry), fields_of<Law>[i].key);
 }
-/// Sets field i of law `Law` in a scene to the enumerator of a word.
+/// Sets field i of law `Law` in a scene, an enumeration, to the enumerator whose name is `word`.
 template <auto part, class Law, std::size_t i>
 void bound_word(Scene& scene, std::size_t entry, std::string_view word) {
   std::visit(
@@ -99,7 +99,8 @@ template <class Variant, auto part>
   return keys;
 }
 
-/// Returns the law that a section names, with its defaults. Throws InvalidInput if a field of the law has a forbidden word.
+/// Returns the law that the key `model` of a section names, with default parameters. Throws InvalidInput if a key of the
+/// section has the word that its law refuses (Field::refused_word).
 template <class Variant>
 [[nodiscard]] Variant law_of(const SectionReader& in) {
   const Variant law = *law_named<Variant>(in.text("model"));

@@ -144,12 +144,12 @@ const Key* find_key(const std::vector<std::string>& path) {
 std::string hint(std::string_view word, const std::vector<std::string_view>& known) {
   if (known.empty()) return {};
   constexpr std::size_t longest_word =
-      64;  // length above which a word is not a typing error; the distance takes time proportional to both lengths
+      64;  // no suggestion for a longer word: the time of edit_distance() is proportional to the product of both lengths
   if (word.size() <= longest_word) {
     const auto distance = [&](std::string_view name) { return edit_distance(word, name); };
     const auto nearest = *std::min_element(known.begin(), known.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
     if (distance(nearest) <= std::max<std::size_t>(2, nearest.size() / 3)) return fmt::format(" (did you mean '{}'?)", nearest);
-    // Least length of a word that is taken as the beginning of a name: "poisson" begins poissons_ratio.
+    // Least length of a word that may be the beginning of the intended name: "poisson" suggests poissons_ratio.
     constexpr std::size_t shortest_beginning = 4;
     const auto is_begun = [&](std::string_view name) { return word.size() >= shortest_beginning && name.starts_with(word); };
     if (std::ranges::count_if(known, is_begun) == 1)

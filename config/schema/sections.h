@@ -47,7 +47,8 @@ struct Of {
     key.bound.number = [](Scene& scene, std::size_t entry) -> double& { return part(scene, entry).*member; };
     return key;
   }
-  /// Returns a key for begin and end on the beam: lengths, percentages of the beam's length, or its tip.
+  /// Returns a key for begin and end of a part of the beam, such as a layer: lengths, percentages of the beam's length, or the
+  /// word "tip".
   template <auto first, auto last>
   [[nodiscard]] static Key span(std::string_view name, std::string_view about) {
     Key key = internal::numbers(name, {dimension::length, dimension::none}, not_negative, about);
@@ -58,7 +59,7 @@ struct Of {
     };
     return key;
   }
-  /// Returns a key for the spans of one or several pads.
+  /// Returns a key for the begin and the end of each pad of an electrode; pads after the first are in the list `further`.
   template <auto first, auto last, auto further>
   [[nodiscard]] static Key spans(std::string_view name, std::string_view about) {
     Key key = span<first, last>(name, about);

@@ -39,7 +39,7 @@ bool is_same(const Key& a, const Key& b) {
   return a.name == b.name && a.about == b.about && a.required == b.required && a.why_fixed == b.why_fixed && a.words == b.words;
 }
 
-/// Returns the keys of a kind of structure that describe no field of its struct; a written scene lists them first.
+/// Returns the keys of a kind of structure that are not in structure_fields, such as lists of sections or modes.
 template <class Kind>
 std::vector<Key> further_keys() {
   if constexpr (std::is_same_v<Kind, ModalStructure>) return modal_table_keys();
@@ -99,7 +99,7 @@ void check(Beam& beam, Structure& s, Scene& scene, const SectionReader& in) {
     if (!in.has_value(key)) continue;
     in.require(!in.flag(key) || in.is_given("poissons_ratio"), key, "needs structure.poissons_ratio");
   }
-  // With [surface], the check of the surface stress tests buckling, including that by the residual stress.
+  // In a scene with [surface], the check of that section tests buckling under the sum of residual and surface stress.
   if (!in.has_value("residual_stress") || in.file().find({"surface"})) return;
   const std::string buckled = why_buckled(s);
   in.require(buckled.empty(), "residual_stress", buckled);

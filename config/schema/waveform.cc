@@ -6,7 +6,8 @@
 namespace softland::internal {
 namespace {
 
-/// Returns the scene keys of one parameter of a waveform family: two if a second key may replace it, such as frequency.
+/// Returns the scene keys that may give a parameter of a waveform family: two for an angular frequency, which the key frequency
+/// may give instead, otherwise one.
 template <class Family>
 std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<Dimension>& level, bool factor) {
   Key key = std::holds_alternative<double Family::*>(parameter.member) ? number(parameter.name, level, any, parameter.about)
@@ -24,7 +25,7 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
       if (!key.required) key.fallback = factor ? "1.0" : "'0 V'";
       break;
     case ParameterKind::swing:
-      if (!factor) key.dimensions.push_back(dimension::none);  // permit percentages, which are plain numbers
+      if (!factor) key.dimensions.push_back(dimension::none);  // permit a percentage of the voltage level, a plain number
       break;
     case ParameterKind::time:
       take(dimension::time, not_negative, "'0 s'");
