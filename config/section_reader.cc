@@ -415,7 +415,7 @@ void SectionReader::set_members(Scene& scene, std::size_t entry) const {
     } else if (bound.element != nullptr) {
       for (std::size_t k = 0; k < quantities(name).size(); ++k) bound.element(scene, entry, k) = quantities(name)[k].value;
     } else if (bound.place != nullptr) {
-      if (is_word(name)) continue;  // the word "tip" is the default of the member
+      if (is_word(name)) continue;  // "tip" instead of a position means the default of the member, the free end
       for (std::size_t k = 0; k < quantities(name).size(); ++k) bound.place(scene, entry, k) = place_of(quantities(name)[k]);
     } else if (bound.number != nullptr) {
       bound.number(scene, entry) = number(name);

@@ -31,7 +31,7 @@ double Axis::pixel(double value) const {
 }
 
 double part_between(double low, double high, double value) {
-  constexpr double middle = 0.5, quarter = 0.25;  // a quarter of each number keeps the differences finite
+  constexpr double middle = 0.5, quarter = 0.25;  // differences of a quarter of each number do not overflow
   const double way = high - low;
   const double part =
       std::isfinite(way) ? (value - low) / way : (quarter * value - quarter * low) / (quarter * high - quarter * low);
@@ -75,7 +75,7 @@ std::vector<double> ticks(const Axis& axis, int wanted) {
   const int every = std::max(1, (last - first + 7) / 8);
   for (int exponent = first; exponent <= last; exponent += every) out.push_back(std::pow(10, exponent));
   if (out.size() > 2) return out;
-  out.clear();  // an axis over few powers of ten also has ticks at 2 and 5 times each power
+  out.clear();  // with fewer than three powers of ten on the axis, put ticks at 2 and 5 times each power as well
   for (int exponent = first - 1; exponent <= last; ++exponent) {
     for (const double part : {1.0, 2.0, 5.0}) {
       const double tick = part * std::pow(10, exponent);

@@ -7,7 +7,7 @@
 
 namespace softland::internal {
 
-inline constexpr const char* ink = "#1b1f24";    // colour of text and of the main curves in a chart
+inline constexpr const char* ink = "#1b1f24";    // colour of text and of curves of Role::best in a chart
 inline constexpr const char* muted = "#5f6b76";  // colour of ticks and frames of a chart
 
 /// Returns `value` if a chart can draw it, NaN if it is beyond 1e100, and 0 if it is within 1e-100 of 0. Only a damaged file

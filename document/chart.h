@@ -1,5 +1,5 @@
-// A chart is a description that is drawn twice: as static SVG by this program (for print and README), and by uPlot in a web
-// page.
+// Description of a chart, from which two drawings are made: static SVG for print and files, and an interactive chart in a web
+// page by the JavaScript library uPlot.
 #pragma once
 
 #include <array>
@@ -21,10 +21,11 @@ namespace softland::internal {
 using CurveTable = std::map<std::string, std::vector<double>>;
 using CurveTables = std::map<std::string, CurveTable>;
 
-/// The role of a curve determines its colour and line style. In reports on a search, `best` is the found waveform, and
-/// `baseline` the plain step. The dots of `evaluations` are the waveforms that were tried, those of `measured` are
-/// measurements. `limit` is a bound, such as a voltage limit. The thin lines of `device` and `device_before` are one of many
-/// devices under the found waveform and under the plain step. `third`, `fourth` and `fifth` are further curves.
+/// The role of a curve determines its colour and line style. In reports on a search for a waveform, `best` is a curve of the
+/// found waveform, and `baseline` of the plain voltage step. `evaluations` are dots, one for each waveform that the search
+/// tried; `measured` are dots of measured values. `limit` is a bound, such as a voltage limit. `device` and `device_before`
+/// are thin lines, one for each device of a sample, under the found waveform and under the plain voltage step. `third`,
+/// `fourth` and `fifth` are further curves.
 enum class Role { best, baseline, evaluations, third, fourth, fifth, measured, limit, device, device_before };
 enum class AxisScale { linear, logarithmic };
 
@@ -35,7 +36,7 @@ struct Series {
   Role role = Role::best;
 };
 
-/// Fills the area between the columns `low` and `high` of a table.
+/// A filled area between two curves, the columns `low` and `high` of a table.
 struct Band {
   std::string table, low, high;
   Role role = Role::best;
@@ -65,14 +66,14 @@ struct Chart {
   std::optional<std::array<double, 2>> y_home;  ///< range of the y axis before any zoom; not set: the range of the data in view
   bool zero_line = false;
   std::string zero_label;
-  bool zero_label_left = false;  ///< true: zero_label, the label of the line y = 0, stands at its left end
+  bool zero_label_left = false;  ///< true: zero_label, the label of the line y = 0, is at the left end of the line
   std::string group;             ///< charts of one group share cursor and zoom; empty: alone
   int height = 300;              ///< height of the chart [px]
   std::vector<Series> series;
   std::vector<Mark> marks;
   std::vector<Band> bands = {};  ///< filled areas between two columns, drawn below the curves, and in static pictures only
-  /// true: each series is drawn as a horizontal bar along x: solid where its value is 1, pale where it is between 0 and 1, and
-  /// empty where it is 0. The bars are below each other.
+  /// true: each element of `series` is drawn as a horizontal bar along x, solid where the value is 1, pale where it is between
+  /// 0 and 1, and empty where it is 0. The bars are below each other.
   bool is_of_bars = false;
 };
 inline constexpr int bar_height = 24;  ///< height of one bar [px]
@@ -82,7 +83,7 @@ struct Picture {
   std::vector<Chart> charts;
 };
 
-/// Returns a chart without series whose x axis is the time from 0 to `until` [s].
+/// Returns a chart whose x axis is the time from 0 to `until` [s]; the caller adds the curves to Chart::series.
 [[nodiscard]] Chart chart_over_time(const std::string& id, const std::string& title, const std::string& y_label,
                                     const std::string& y_unit, double until, int height);
 

@@ -22,7 +22,7 @@ constexpr std::string_view words_style = "words", missing_style = "missing", par
 constexpr std::size_t most_warnings = 200;  // largest number of warnings that a page shows
 constexpr std::size_t gap = 2;              // blanks between columns of a table on a terminal
 
-// Returns the heading of the column with index `place`; null if the table has no heading there.
+// Returns the heading of the table's column with index `place`; null if the column has no heading.
 const TableCell* head_of(const ReportTable& table, std::size_t place) {
   return place < table.head.size() ? &table.head[place] : nullptr;
 }
@@ -55,8 +55,8 @@ std::vector<std::size_t> widths_of(const ReportTable& table) {
   return widths;
 }
 
-// Returns a row of a table as a line of text: its heading, and the columns from `first` to before `last`. Numbers are
-// right-aligned, words left-aligned.
+// Returns a row of a table as a line of text: the first cell, which is the row's heading, and the columns with indices from
+// `first` to `last` - 1. Numbers are right-aligned, words left-aligned.
 std::string line_of(const TableRow& row, const ReportTable& table, const std::vector<std::size_t>& widths, std::size_t first,
                     std::size_t last) {
   std::string line;

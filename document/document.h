@@ -31,7 +31,7 @@ struct TableCell {
 /// Makes a cell that only a page shows; `html` is not escaped.
 [[nodiscard]] TableCell drawn_cell(std::string html, std::string style);
 
-/// The first cell of a row is its heading.
+/// A row of a table; the first cell is the heading of the row.
 using TableRow = std::vector<TableCell>;
 struct ReportTable {
   TableRow head;
@@ -50,7 +50,8 @@ struct SubHeading {
 struct ReportList {
   std::vector<std::string> lines;
 };
-/// A picture that only a page shows. It is drawn when the page is written, so that output on a terminal does not wait for it.
+/// A picture that only a web page shows. The function `html` draws it when the page is written, so that a report on a terminal
+/// costs no time for drawing.
 struct Drawing {
   std::function<std::string(const internal::Picture&)> html;  ///< returns HTML, not escaped, from the result of Document::draw
 };
@@ -66,7 +67,7 @@ struct ReportSection {
   ShownIn shown = ShownIn::everywhere;
 };
 
-/// A main result with its name, at the top of a page.
+/// A main result of a study, such as the impact velocity, that the top of the web page shows in large type.
 struct KeyNumber {
   std::string name, value;
   std::string change = {};  ///< change of the number from its value under the plain voltage step, in words; may be empty
@@ -75,7 +76,7 @@ struct KeyNumber {
   bool is_words = false;    ///< true if the value is words instead of a number
 };
 
-/// The data with which a user can compute the results of a page again.
+/// What a user needs to compute the results of a page again: version, command, scene, seed and tolerance.
 struct MadeAgain {
   std::string version, command;  ///< version of the program, and command line, that gave the results
   std::string made_with;         ///< compiler and machine that gave the results, one line; empty if unknown
@@ -85,8 +86,8 @@ struct MadeAgain {
   std::vector<std::string> reproduce = {};                      ///< commands that repeat the results; empty: `command` does
 };
 
-/// A report for the terminal and for a web page. Its functions refer to the results of the study (such as a ClosingRecord),
-/// which must outlive it.
+/// A report for the terminal and for a web page. Functions such as `draw` refer to the results of the study (for example a
+/// ClosingRecord), which must outlive the document.
 struct Document {
   std::string title;  ///< title of the scene that the report is about; may be empty
   std::string origin;
@@ -97,7 +98,7 @@ struct Document {
   std::vector<std::string> warnings;
   std::vector<std::string> page_warnings = {};  ///< warnings that only the page shows, besides those of the terminal
   std::function<internal::Picture()> draw;      ///< returns the charts for the page's script; may be empty
-  MadeAgain made = {};                          ///< data for computing the results again
+  MadeAgain made = {};                          ///< version, command, scene and seed that gave the results
   /// CSS and HTML that the page needs for pictures other than the charts of `draw`.
   std::string style = {}, scripts = {};
 };

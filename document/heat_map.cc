@@ -30,14 +30,14 @@ std::vector<double> finite(const std::vector<double>& values) {
   return out;
 }
 
-/// Returns a value that overflowed to infinity as the largest finite number of its sign.
+/// Replaces an infinite value by the largest finite number of the same sign.
 double within(double value) {
   constexpr double largest = std::numeric_limits<double>::max();
   return std::clamp(value, -largest, largest);
 }
 
-/// Assembles the contour lines of one level from pieces. Each piece crosses one square between four cell centres and joins two
-/// edges of the square. An edge is identified by the cell where it begins and its direction, right or up.
+/// Assembles the contour lines of one level from segments. Each segment crosses a square whose corners are four cell centres,
+/// from one edge of the square to another. An edge is identified by the cell where it begins and its direction, right or up.
 class Contour {
  public:
   Contour(const std::vector<double>& values, std::size_t columns, double level)
@@ -50,7 +50,7 @@ class Contour {
 
   std::vector<ContourLine> lines() {
     std::vector<ContourLine> all;
-    // An edge that only one piece joins is an end of an open line. The lines that remain after all open ones are closed.
+    // An edge with only one segment is an end of an open line. All lines that remain after the open ones are closed.
     for (const bool open : {true, false}) {
       for (auto& [edge, next] : joined_) {
         if (next.empty() || (open && next.size() != 1)) continue;
@@ -81,7 +81,7 @@ class Contour {
     }
     if (crossed.size() == 2) join(crossed[0], crossed[1]);
     if (crossed.size() != 4) return;
-    // The line crosses all four edges of the square at a saddle. The mean of the four corners decides which edges it joins.
+    // At a saddle, two segments cross all four edges of the square. The mean of the four corners decides which edges they join.
     const bool middle = std::midpoint(std::midpoint(corners[0], corners[1]), std::midpoint(corners[2], corners[3])) > level_;
     const bool turned = middle == (corners[0] > level_);
     join(crossed[0], crossed[turned ? 1 : 3]);
@@ -115,7 +115,7 @@ class Contour {
   std::map<Edge, std::vector<Edge>> joined_;
 };
 
-/// Maps the values of an axis to pixels: the cell of each value reaches half-way to the neighbouring values.
+/// Maps the values of an axis to pixels. The cell of a value ends half-way to the neighbouring values.
 class Cells {
  public:
   Cells(const HeatMapAxis& axis, double from, double to) : values_(axis.values) {
@@ -220,7 +220,7 @@ std::string contours(const HeatMap& map, const Cells& x, const Cells& y, const C
   for (const double level : contour_levels(map.values, 9)) {
     if (level <= range.low || level >= range.high) continue;
     for (const ContourLine& line : contour_lines(map.values, columns, level)) {
-      // Least number of points of a contour line that is drawn, and of one that has a label.
+      // Shorter contour lines, by their number of points, are not drawn, or are drawn without a label.
       constexpr std::size_t shortest = 4, labelled = 14;
       if (line.size() < shortest) continue;
       for (std::size_t k = 0; k < line.size(); ++k)

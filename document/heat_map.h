@@ -1,4 +1,4 @@
-// A heat map shows a figure of the switch over two variables as colours, with contour lines.
+// A heat map: colours and contour lines show a figure of merit of the switch over two variables, such as length and gap.
 #pragma once
 
 #include <array>

@@ -17,10 +17,9 @@ namespace softland::internal {
 
 /// Draws the chart as a static <svg> element.
 [[nodiscard]] std::string still_picture(const CurveTables& tables, const Chart& chart);
-/// Draws the chart as a small static <svg> element. Many of them stand beside each other in an element of CSS class
-/// "multiples".
+/// Draws the chart as a small static <svg> element, for rows of small charts in an element of CSS class "multiples".
 [[nodiscard]] std::string small_picture(const CurveTables& tables, const Chart& chart);
-/// Returns the HTML of a chart: title, caption, and the element in which the script draws the chart.
+/// Returns the HTML of a chart: title, caption, and the element in which the page's script (uPlot) draws the chart.
 [[nodiscard]] std::string figure_html(const CurveTables& tables, const Chart& chart);
 /// Returns the HTML that a page needs to draw charts: the CSS style and the scripts.
 [[nodiscard]] std::string chart_style();

@@ -154,7 +154,7 @@ std::string quantity_within(double value, double error, std::string_view unit, i
   if (!std::isfinite(value)) return none;
   if (is_fast(value, unit)) return quantity_within(per_microsecond * value, per_microsecond * error, fast_slew, digits);
   const double least = resolution(unit);
-  const bool known = !(error >= least);  // true unless the error is at least the resolution of the unit
+  const bool known = !(error >= least);  // true if the error is below the resolution of the unit, or unknown (NaN)
   if (known && value > 0 && value < least) return "< " + quantity(least, unit, 1);
   const Shown s = shown(value, error, unit, digits);
   if (unit.empty() && !(error > 0)) return plain_number(value, digits);

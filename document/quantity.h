@@ -10,7 +10,7 @@
 
 namespace softland::internal {
 
-/// An SI prefix: value = shown number * factor.
+/// An SI prefix of a unit: value [unit] = number before the prefix * factor, as in 2e-6 m = 2 * 1e-6 m = 2 µm.
 struct Prefix {
   double factor = 1;
   std::string_view symbol;  ///< symbol of the prefix: "n", "µ", "" ...
