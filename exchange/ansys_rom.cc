@@ -96,7 +96,7 @@ class RomReader {
     return static_cast<long long>(value);
   }
 
-  // Returns the first `count` numbers of row `at`; further numbers, which fill the line, must be 0.
+  // Returns the first `count` numbers of row `at`. The further numbers of the row only fill the line and must be 0.
   std::vector<double> reals(std::size_t at, std::size_t count, const char* what) const {
     if (at >= rows_.size()) refusals_.fail(fmt::format("the file ends before the {}", what));
     const Row& row = rows_[at];

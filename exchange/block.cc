@@ -17,8 +17,8 @@ namespace softland::internal {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-// Some instruments write settings, such as "Sample interval, 1e-6", in further columns beside the first rows of numbers.
-// Largest number of rows beside which they may stand.
+// Some instruments write settings, such as "Sample interval, 1e-6", in further columns beside the first rows of numbers. In
+// rows after this number of rows, a text in these columns is an error.
 constexpr std::size_t longest_preamble = 64;
 
 class BlockReader {
@@ -58,8 +58,8 @@ class BlockReader {
   const ReadKeys& keys_;
   DecimalSign decimal_;
   char separator_ = ',';
-  bool pairs_ = false;        // true: commas are decimal signs and separators, as in 0,5,1,25
-  bool may_be_pairs_ = true;  // true while all rows so far may be such numbers: see pairs_
+  bool pairs_ = false;        // true: commas are both decimal signs and separators, as in 0,5,1,25 for 0.5 and 1.25
+  bool may_be_pairs_ = true;  // true while every row may consist of numbers with decimal commas, as in 0,5,1,25
   std::vector<bool> is_numeric_;
   Block block_;
   CellList headings_;  // headings of all columns of the file, above the numbers
@@ -93,8 +93,8 @@ bool BlockReader::begins_block(const CellList& cells) const {
     if (!may_be_value(cells[i])) return false;
     has_number |= holds_number(cells[i]);
   }
-  // If the file has only one column of numbers, a line with a text in front of the number is not a row: it is a setting of the
-  // instrument with its value.
+  // In a file with a single column of numbers, a line with a text in front of the number is not a row of the record, but a
+  // setting of the instrument with its value.
   const std::size_t last = is_numeric_.size() - 1;
   const bool is_only = std::count(is_numeric_.begin(), is_numeric_.end(), true) == 1;
   const bool has_key = is_only && std::any_of(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(last),
@@ -146,7 +146,7 @@ void BlockReader::take_beside(const CellList& cells, std::size_t line, std::stri
   }
   if (!has_others) return;
   ++rows_with_words_;
-  if (cells.size() != width_ && !block_.lines.empty()) return;  // read_row() refuses a row with another number of cells
+  if (cells.size() != width_ && !block_.lines.empty()) return;  // read_row() refuses rows of different numbers of cells
   if (block_.lines.size() >= longest_preamble) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (!others[i].empty())
@@ -159,7 +159,8 @@ void BlockReader::take_beside(const CellList& cells, std::size_t line, std::stri
 // Returns the number of characters of a number's text without the sign.
 std::size_t digits_in(std::string_view cell) { return cell.size() - (cell.starts_with('-') || cell.starts_with('+') ? 1 : 0); }
 
-// Returns true if the end of the file may have cut its last number, which is then shorter than that of all other rows.
+// Returns true if the file may end in the middle of a number: the last number of `cells`, the last row, is shorter than the
+// last number of all other rows, which have equal length.
 bool BlockReader::was_cut(const CellList& cells) const {
   constexpr std::size_t fewest = 3;
   return block_.lines.size() >= fewest && digits_in(cells[is_numeric_.size() - 1]) < last_length_;
@@ -252,7 +253,7 @@ bool BlockReader::may_be_headings(const CellList& cells) const {
   return filled > 0 && filled + 1 >= due && !(due > 1 && cells.size() == 1);
 }
 
-// Returns the cells of a line if all its cells above columns of numbers are units; otherwise none.
+// Returns the cells of a line if every cell above a column of numbers is a unit or blank; otherwise an empty list.
 CellList BlockReader::units_in(const CellList& cells) const {
   bool has_unit = false;
   for (std::size_t i = 0; i < std::min(cells.size(), is_numeric_.size()); ++i) {
@@ -307,7 +308,7 @@ void BlockReader::take_headings(const std::vector<Line>& above) {
     block_.names.emplace_back(i < names.size() ? names[i] : std::string_view());
     block_.units.emplace_back(i < units.size() ? units[i] : std::string_view());
   }
-  // A heading that is not above numbers may be a setting of the instrument, whose value is in the row of units.
+  // A heading above a column without numbers may be a setting of the instrument; its value is then below, in the row of units.
   for (std::size_t i = 0; i < std::min(names.size(), units.size()); ++i) {
     if ((i >= is_numeric_.size() || !is_numeric_[i]) && !names[i].empty()) block_.preamble.take(names[i], units[i]);
   }

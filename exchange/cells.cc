@@ -118,7 +118,7 @@ Cell read_cell(std::string_view cell, DecimalSign& decimal) {
     if (decimal.sign == '\0') decimal.sign = sign;
     if (decimal.sign != sign) return {.kind = CellKind::other_sign, .value = *value};
   }
-  // SCPI instruments write 9.9E+37 for an overflow and 9.91E+37 for an unknown value.
+  // Instruments with SCPI write 9.9E+37 for an overflow and 9.91E+37 for an unknown value: numbers from 9.9E+37 on are missing.
   constexpr double scpi_overflow = 9.9e37;
   if (std::abs(*value) >= scpi_overflow) return {.kind = CellKind::not_finite};
   return {.kind = CellKind::number, .value = *value};

@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::string_view own_format = "softland CSV";
 
-// Returns true for the name of a column of contact states, 0 or 1, that softland writes: "closed" or "NAME_closed". In a file
-// with such a column, two rows of the same time are a jump.
+// Returns true for the name of a column of contact states, 0 or 1, that softland writes: "closed" or "NAME_closed". Such a
+// column shows that softland wrote the file, in which two rows of the same time mean a jump of the state.
 bool is_contact_state(std::string_view name) { return name == "closed" || name.ends_with("_closed"); }
 
 /// Makes a recording (times and channels) from columns of numbers and from the lines above the columns.
@@ -103,7 +103,7 @@ std::optional<std::size_t> RecordingMaker::time_place() const {
     }
     return std::nullopt;
   };
-  // Names that a column of times may have. A column of row numbers takes its place only if the file has no column of times.
+  // Names that a column of times may have. A column of row numbers is used for the times only if no column has such a name.
   constexpr std::array<std::string_view, 11> times{"time",      "t",    "x",     "x-axis", "xpos",  "times",
                                                    "timestamp", "zeit", "temps", "tempo",  "tiempo"};
   constexpr std::array<std::string_view, 3> rows{"index", "sample", "n"};

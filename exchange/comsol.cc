@@ -304,7 +304,7 @@ class ComsolReader {
   std::optional<double> nodes_;
   std::vector<std::size_t> positions_;
   std::vector<Column> columns_;
-  std::vector<std::vector<Complex>> values_;  // motion of the mesh by column and node [m]
+  std::vector<std::vector<Complex>> values_;  // displacements of the mesh nodes, by column of the file and node [m]
   std::vector<std::string_view> cells_;
 };
 

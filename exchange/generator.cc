@@ -96,7 +96,7 @@ std::string generator_file(const GeneratorFormat& format, GeneratorSamples sampl
   require(!samples.volts.empty(), "a generator file needs at least one sample");
   require(samples.volts.size() <= format.most, [&] {
     const double most = samples.rate * static_cast<double>(format.most - 1) / static_cast<double>(samples.volts.size() - 1);
-    const double step = std::pow(10, std::floor(std::log10(most)) - 2);  // third digit, to which the rate is rounded down
+    const double step = std::pow(10, std::floor(std::log10(most)) - 2);  // the rate is rounded down to three digits
     return fmt::format("{} samples: a {} takes at most {}; choose a sample rate of at most {}", samples.volts.size(),
                        format.instrument, format.most, engineering(std::floor(most / step) * step, "Hz", 3));
   });

@@ -15,7 +15,7 @@ struct GeneratorSamples {
   std::string name;
   double rate = 0;                         ///< sample rate of the generator [Hz]
   std::vector<double> volts;               ///< voltage samples at the output of the generator [V]
-  std::optional<std::size_t> marker = {};  ///< number of the sample at which the sync output of the generator falls
+  std::optional<std::size_t> marker = {};  ///< number of the sample at which the sync (trigger) output goes from high to low
 };
 
 /// A file format of waveform generators, with the fewest and the most samples that the instrument of this name accepts.

@@ -30,7 +30,7 @@ class Refusals {
   std::string file_;
 };
 
-/// Returns the beginning of a cell for a message.
+/// Returns the text of a cell, shortened for a message.
 [[nodiscard]] std::string shown_cell(std::string_view cell);
 /// Splits a line into cells at the separator. A number and its unit, "5.0 V", are one cell even if blanks separate the cells.
 void split_row(std::string_view line, char separator, CellList& cells);

@@ -18,7 +18,7 @@ void merge_short(std::vector<LevelEdge>& edges, bool state, double least) {
   for (std::size_t k = 0; k < edges.size(); ++k) {
     const bool is_short = edges[k].closed == state && k + 1 < edges.size() && edges[k + 1].time - edges[k].time < least;
     if (is_short) {
-      ++k;  // skip the edge that ends the short interval, too
+      ++k;  // omit the edge at the end of the short interval as well as the edge at its begin
     } else {
       kept.push_back(edges[k]);
     }

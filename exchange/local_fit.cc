@@ -51,7 +51,7 @@ std::optional<double> value_on_axis(std::span<const NearPoint> points) {
     }
     flat_p = std::max(flat_p, std::abs(point.p)), flat_q = std::max(flat_q, std::abs(point.q));
   }
-  // A flat mesh does not determine the slopes in the direction in which it has no extent, so set them to 0.
+  // A mesh without extent along p or q does not determine the coefficients of p or q (b0, b1 or c0, c1), so set them to 0.
   if (flat_p == 0) rows[4][4] = rows[6][6] = 1;
   if (flat_q == 0) rows[5][5] = rows[7][7] = 1;
   return first_unknown(rows);

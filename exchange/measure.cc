@@ -186,7 +186,7 @@ std::optional<Measured> measured_value(std::string_view text, const std::optiona
 
 bool is_unit_of_cells(const std::optional<Unit>& unit) {
   if (!unit) return false;
-  // A number with m or g may also be a SPICE number with a scale suffix, so these units are not accepted.
+  // In a cell such as "5m", m or g may also be a scale suffix of SPICE (milli, giga), so metres and grams are not accepted.
   const bool is_suffix = unit->symbol == "m" || unit->symbol == "g";
   return unit->measure == Measure::time || unit->measure == Measure::voltage || (unit->measure == Measure::other && !is_suffix);
 }

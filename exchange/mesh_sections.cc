@@ -109,7 +109,7 @@ std::vector<double> MeshSections::widths() const {
   const double rounding = printed * sections_.back().place;
   std::vector<double> all;
   for (std::size_t k = 0; k < sections_.size(); ++k) {
-    // In an irregular mesh, where most places have fewer than three nodes, nodes at the places nearby give the width too.
+    // In an irregular mesh (most places have fewer than three nodes), the width at a place includes the nodes of nearby places.
     const std::size_t reach = is_irregular() ? nearby : 0;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t s = k - std::min(k, reach); s <= std::min(k + reach, sections_.size() - 1); ++s) {
@@ -185,7 +185,7 @@ double MeshSections::twist(const Section& section, const NodalMode& mode, const 
 }
 
 double MeshSections::fitted(std::size_t place, const NodalMode& mode) const {
-  constexpr double reach = 2.5;  // half the width of the fit window in spacings of the places, below `nearby`
+  constexpr double reach = 2.5;  // half the width of the fit window in spacings of the places; must be below `nearby`
   const std::size_t p = direction_.direction, q = 3 - axis_.direction - p;
   std::vector<NearPoint> near;
   for (std::size_t s = place - std::min(place, nearby); s <= std::min(place + nearby, sections_.size() - 1); ++s) {
@@ -206,7 +206,7 @@ double MeshSections::fitted(std::size_t place, const NodalMode& mode) const {
   return *value;
 }
 
-// Returns true if the motion at the first place of the axis is zero within the printed digits of the file.
+// Returns true if the nodes at the first place along the axis move by less than the rounding error of the file's numbers.
 bool MeshSections::stands_still_at_first(const NodalMode& mode) const {
   const double rounding = printed * (sections_.back().place - sections_.front().place);
   double most = 0, here = 0;

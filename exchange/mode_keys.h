@@ -16,7 +16,7 @@ struct ModeKeys {
   std::optional<double> length_unit = {};  ///< unit of the file's positions [m]
   std::optional<double> mass_unit = {};    ///< unit of mass in which the file's modes are normalised [kg]
   std::optional<double> mass =
-      {};  ///< mass of a structure of constant mass per length [kg]; gives the modal masses if the file does not
+      {};  ///< mass of a structure of constant mass per length [kg]; normalises the modes if the file has no modal masses
   bool mass_normalised = false;          ///< true if the modes of the file are mass-normalised, although the file does not say so
   std::optional<double> clamp = {};      ///< position of the clamp on the axis of the file, if there is no node at the clamp [m]
   std::vector<double> frequencies = {};  ///< frequencies of the modes of a file that does not hold them [Hz]

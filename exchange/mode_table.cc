@@ -226,8 +226,8 @@ class TableMaker {
   static void scale(std::vector<double>& shape, double factor) {
     for (double& value : shape) value *= factor;
   }
-  // Returns the mean square of a mode shape over the length; between its values, the shape is a cubic spline clamped at the
-  // first.
+  // Returns the mean square of a mode shape over the length. The shape is a cubic spline through its values, with slope 0 at
+  // the first one, the clamp.
   [[nodiscard]] double mean_square(const std::vector<double>& shape) const;
 
   NodalModes read_;

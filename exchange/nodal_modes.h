@@ -20,7 +20,7 @@ struct NodalMode {
   double frequency = std::numeric_limits<double>::quiet_NaN();
   double modal_mass =
       std::numeric_limits<double>::quiet_NaN();  ///< modal mass in the unit of the file; NaN if the file does not give it
-  std::vector<Vector3> motion;                   ///< motion of each node in the mode, in any unit
+  std::vector<Vector3> motion;                   ///< displacement of each node in the mode, in the unit of the file
   std::string name;                              ///< name of the mode in messages, such as "mode 1"
   bool is_used = true;                           ///< false for a mode that the reduced-order model in the file leaves out
 };
@@ -29,10 +29,10 @@ struct NodalModes {
   std::string format;
   std::vector<Vector3> nodes;    ///< positions of the nodes in the length unit of the file; NaN where it lacks a coordinate
   std::vector<NodalMode> modes;  ///< modes in the order of the file
-  std::array<bool, 3> holds{true, true, true};  ///< true for the directions of motion that the file holds
+  std::array<bool, 3> holds{true, true, true};  ///< true if the file has the x, y or z component of the displacements
   std::optional<double> length_unit = {};       ///< unit of length of the node positions that the file names [m]
   bool needs_length_unit = false;               ///< true if the format has no usual unit of length, so that the user must give it
-  std::string normalised_by = {};               ///< source of the modal masses in the file, in words; empty if it has none
+  std::string normalised_by = {};               ///< why `modal_mass` is known, in words; empty if the file has no modal masses
   std::vector<std::string> left_out = {}, notes = {};
 };
 

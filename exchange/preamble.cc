@@ -120,8 +120,8 @@ std::string letters_of(std::string_view key) {
   return letters;
 }
 
-// Returns the statement about the times, such as the interval, that the key `says` makes with this number; none if the unit of
-// the number does not fit.
+// Returns the statement about the times that a key makes with this number: a sampling rate of 1 MHz states an interval of 1 us.
+// `says` is the meaning of the key. Returns none if the unit of the number does not fit the key.
 std::optional<TimeClaim> claim_of(Says says, const Measured& number) {
   using Of = TimeClaim::Of;
   const bool is_rate = says == Says::rate || says == Says::frequency;

@@ -15,7 +15,7 @@ namespace softland::internal {
 struct TimeClaim {
   enum class Of { interval, start, trigger_sample, centre, samples, period };
   Of of = Of::interval;
-  std::string key;        ///< key of the statement as the file writes it
+  std::string key;        ///< key in the file that makes the statement, such as "Sample Interval"
   double value = 0;       ///< number that the preamble states: a time [s], or a count of samples
   bool has_unit = false;  ///< true if the file gives a unit with the stated number
 };

@@ -27,7 +27,7 @@ struct ReadKeys {
   std::string time_unit = {};           ///< unit of the times; empty: the unit in the file, or else s
   char decimal = '\0';                  ///< decimal sign of the file, '.' or ','; '\0': found from the numbers
   std::optional<double> interval = {};  ///< interval between rows, which replaces the times of the file [s]
-  bool uneven = false;                  ///< true: the times are used as written, and two rows of the same time are a jump
+  bool uneven = false;                  ///< true: do not replace the times by even ones; two rows of equal time mean a jump
 };
 
 /// The missing numbers in a column of a recording: line of the first, and kind.
@@ -57,7 +57,7 @@ struct Recording {
   bool times_have_unit = false;
   double last_digit = 0;                  ///< resolution of the times: value of their last written digit [s]
   std::optional<double> interval = {};    ///< sampling interval that the file states beside the times [s]
-  bool is_breakpoints = false;            ///< true if straight lines connect the rows, and two rows of the same time are a jump
+  bool is_breakpoints = false;            ///< true for a piecewise linear waveform; two rows of equal time mean a jump
   std::vector<std::uint32_t> lines = {};  ///< line of the file in which each row is
   std::vector<Channel> channels = {};
   std::vector<std::string> left_out = {};

@@ -135,7 +135,7 @@ class NetlistReader {
     tell_numbers_in_comment(given, line);
     take_numbers(line.substr(open + 1));
   }
-  // Adds a note if a comment between the points of a PWL source begins with a number: it may hide points by mistake.
+  // Adds a note if a comment in a PWL source begins with a number: the user may have meant points of the source.
   void tell_numbers_in_comment(std::string_view given, std::string_view line) {
     std::string_view comment = trimmed(given);
     comment.remove_prefix(line.size());

@@ -23,8 +23,8 @@ constexpr double single_precision = 1.2e-7;
 std::string seconds(double time) { return engineering(time, "s", 6); }
 std::string quoted(const std::string& key) { return "\"" + printable_line(key) + "\""; }
 
-/// A sampling interval that the file states, in seconds. If the file names no unit with the number, `value` takes the number as
-/// seconds, and `in_units` as in the horizontal unit of the file.
+/// A sampling interval that the file states [s]. If the file gives no unit with the number, the unit may be the second or the
+/// file's horizontal unit, such as ms: `value` is the interval in the first case, `in_units` in the second.
 struct Interval {
   std::string source;
   double value = 0;
@@ -99,7 +99,8 @@ void RowTimer::take_unit() {
   }
 }
 
-// Throws InvalidInput if the file states fewer samples than `last`, the number of rows or the number of the last sample.
+// Throws InvalidInput if the file states fewer samples than it holds: `last` is the number of rows, or the number of the last
+// sample, counted from 1.
 void RowTimer::require_count(double last) const {
   if (is_decided()) return;
   for (const TimeClaim& claim : preamble_.claims) {
@@ -211,7 +212,8 @@ void RowTimer::set_even_from_numbers() {
           column_->lines[i], static_cast<std::size_t>(column_->column),
           fmt::format("the number of the sample is {}, and that above is {}; numbers must be consecutive", raw[i], raw[i - 1]));
   }
-  // Numbers of samples count from 0 in a column with a unit of samples, from 1 in EasyWave files (xpos), otherwise from 0 or 1.
+  // Samples are numbered from 0 in a column whose unit is samples, from 1 in EasyWave files (column xpos), and in other files
+  // from the first number in the column if it is 0 or 1.
   const bool counts_from_one = !unit_ && (raw.front() == 1 || (column_->name == "xpos" && raw.front() > 1));
   const double first = raw.front() - (counts_from_one ? 1 : 0);
   require_count(first + static_cast<double>(count_));
@@ -221,7 +223,7 @@ void RowTimer::set_even_from_numbers() {
         fmt::format("its first row is number {}: {} after the first sample", raw.front(), seconds(first * *made_.interval)));
 }
 
-// Sets the times from the column "xpos" of an EasyWave file, which holds shares of the period or times.
+// Sets the times from the column "xpos" of an EasyWave file, whose numbers are either shares of the period or times.
 void RowTimer::set_shares_of_period() {
   const std::vector<double>& raw = column_->raw;
   if (intervals_.empty())
@@ -270,8 +272,8 @@ void RowTimer::require_start() const {
   if (is_decided() || count_ < 2) return;
   const double interval = made_.interval.value_or(std::abs(duration()) / intervals());
   for (const TimeClaim& claim : preamble_.claims) {
-    // Check the first time against what the file states about it. The middle of the record has a known meaning in GW Instek
-    // files only, and a start without a unit may belong to another quantity.
+    // Compare the first time with the statements of the preamble about it. Only GW Instek files state the time of the middle
+    // sample reliably. A start without a unit may be of another quantity than time, unless the file states an interval.
     const bool is_axis = claim.of == Of::centre ? preamble_.text.find("sampling period") != std::string::npos
                                                 : claim.has_unit || !intervals_.empty();
     if (!is_start(claim) || !is_axis) continue;
@@ -288,8 +290,8 @@ void RowTimer::require_start() const {
   }
 }
 
-// Throws InvalidInput if the column and the preamble name different units of the times, and no stated interval tells which is
-// right.
+// Throws InvalidInput if the column and the preamble name different units of the times. If the file states the interval,
+// require_interval() finds the right unit instead.
 void RowTimer::require_unit() const {
   if (is_decided() || !keys_.time_unit.empty() || !unit_above_ || !column_->unit || unit_above_->measure != Measure::time) return;
   if (unit_above_->per_si == column_->unit->per_si || !intervals_.empty()) return;

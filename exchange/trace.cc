@@ -63,8 +63,8 @@ double rounding(const Recording& recording) {
   return 1.01 * recording.last_digit + single_precision * std::max(std::abs(t.front()), std::abs(t.back()));
 }
 
-// Returns the first row whose interval from the row above differs, if at least nine of ten intervals are equal: it may follow a
-// gap in the record. None if the intervals are uneven in general.
+// If at least nine of ten intervals between rows are equal, returns the first row after an interval that differs, for example
+// after a gap in the record. Returns none if the intervals are uneven in general.
 std::optional<std::size_t> odd_step(const Recording& recording) {
   constexpr double most_of = 0.9;
   const std::vector<double>& t = recording.times;
@@ -131,7 +131,8 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
                       "interval = \"{}\" uses that interval, interval = \"uneven\" the times",
                       recording.file, seconds(*recording.interval), seconds(off), seconds(*recording.interval)));
     }
-    // Largest deviation from even spacing, as a share of the interval, of times that are used as written.
+    // Times that deviate from even spacing by at most this share of the interval are used as written. Larger deviations are
+    // rounding errors, so even times replace the times.
     constexpr double exact = 1e-3;
     if (axis.repeated == 0 && !axis.back && off <= exact * *recording.interval) return recording.times;
     told += fmt::format("; times are rounded to {}: replaced by even times from the first one with the interval of the file",

@@ -12,7 +12,8 @@
 namespace softland::internal {
 namespace {
 
-/// The rows of a file in which each row holds the numbers of one channel (`places` are their lines), and the lines above.
+/// The rows of a file in which each row holds all numbers of one channel: `rows` are their cells, `places` their lines in the
+/// file, and `above` the lines before the first of them.
 struct LyingRows {
   std::vector<Line> above, places;
   std::vector<CellList> rows;

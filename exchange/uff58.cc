@@ -296,8 +296,8 @@ std::vector<double> times_of(const Header& header, const Values& values) {
   return times;
 }
 
-// Checks a data set with unevenly spaced abscissas: the first abscissa and the increment in its header must both be 0 or agree
-// with the abscissas.
+// Checks a data set with unevenly spaced abscissas (times). If its header states a first abscissa or an increment other than 0,
+// they must agree with the abscissas.
 void require_same_axis(const Header& header, const Values& values, const std::vector<double>& times, std::size_t line,
                        const Refusals& refusals, const ReadKeys& keys) {
   if (header.is_even || (header.first == 0 && header.step == 0)) return;
@@ -336,7 +336,7 @@ void add_channel(Recording& made, const Header& header, Values values) {
   made.channels.push_back(std::move(channel));
 }
 
-// Skips the rest of a data set that is not used.
+// Skips the rest of a data set that does not become a channel of the recording.
 void pass(Reader& in) {
   while (!in.at_end() && !is_mark(in.line())) continue;
 }

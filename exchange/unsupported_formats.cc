@@ -8,7 +8,7 @@ namespace softland::internal {
 namespace {
 
 struct KindRow {
-  std::string_view begin;  ///< begin of one of the first lines of such a file, after blanks
+  std::string_view begin;  ///< text, after blanks, with which one of the first lines of a file of kind `what` begins
   std::string_view what;
 };
 constexpr std::array kinds{

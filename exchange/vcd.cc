@@ -299,7 +299,7 @@ void VcdReader::take_time() {
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), time);
   if (error != std::errc() || stop != digits.data() + digits.size()) fail_at_word("must be a time, a whole number below 2^64");
   if (!has_begun_) {
-    // Values that the file gives before its first time are those at that time.
+    // Values that the file gives before its first time hold from this time on.
     for (DumpedSignal& signal : signals_)
       for (Change& change : signal.changes) change.time = time;
     moments_.assign(1, {.time = time, .line = static_cast<std::uint32_t>(words_.line())});

@@ -9,7 +9,7 @@ namespace softland {
 enum class Integrator {
   automatic,   ///< the caller chooses a method that suits its equations; make_stepper() refuses this value
   lawson,      ///< explicit Runge-Kutta 5(4) for the deviation of the modes from their free oscillation: lawson.h
-  arkode_erk,  ///< explicit Runge-Kutta 5(4) for the equations as they are, by ARKODE
+  arkode_erk,  ///< explicit Runge-Kutta 5(4) for the untransformed equations of motion, by ARKODE
   esdirk,      ///< diagonally implicit Runge-Kutta 5(4), by ARKODE, with the exact Jacobian
   bdf,         ///< backward differentiation formulas, by CVODE, with the exact Jacobian
   adams,       ///< Adams-Moulton method, by CVODE, with functional iteration

@@ -57,7 +57,7 @@ void Lawson::turn_to_nodes(double h) {
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {
     const Lane phase = h * lane(omega_, b);
     for (std::size_t s = 1; s < stages; ++s) {
-      if (s == last) {  // both last stages are at the end of the step
+      if (s == last) {  // the last two stages are both at the end of the step, so copy the values
         for (const auto member : {&Stage::cosine, &Stage::sine, &Stage::slack})
           lane(k_[s].*member, b) = lane(k_[s - 1].*member, b);
         continue;
@@ -185,7 +185,7 @@ bool Lawson::step(double t_stop) {
       y_.swap(trial_);
       rates_.swap(next_rates_);
       last_error_ = std::max(log_error, Pair::least_error);
-      // A step that was shortened to end at t_stop also sets the next step length. It is not used: a restart follows at t_stop.
+      // If the step was shortened to end at t_stop, this next step length is too short, but the caller restarts at t_stop.
       h_ = h * std::clamp(growth, Pair::least_growth, most);
       first_ = false;
       return true;

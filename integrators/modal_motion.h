@@ -1,7 +1,7 @@
 // Motion of one point of the beam within an integration step. Every mode moves by its exact motion under the force at the start
 // of the step (integrators/phase.h). A quintic polynomial is added, so that position, velocity and acceleration agree with
 // those of the integrator at the end of the step. The force changes little in a step, so this interpolation is accurate even if
-// the phase of the fastest mode advances by a radian and more. Quintic interpolation between both ends alone would not be.
+// the phase of the fastest mode advances by a radian and more. A quintic polynomial alone would be inaccurate in such a step.
 #pragma once
 
 #include <array>
@@ -37,9 +37,9 @@ class ModalMotion {
     push_.resize(omega_.size());
   }
 
-  /// Sets the integration step to interpolate. It is `length` long [s] and divided into `pieces` equal intervals for knot(). q,
-  /// v and a are the coordinates, velocities and accelerations of the modes at its start. `end` is the motion of the point at
-  /// its end. The phase of a mode may advance by largest_phase at the most.
+  /// Sets the integration step of duration `length` [s] to interpolate. knot() then returns the motion at the ends of `pieces`
+  /// equal intervals of the step. q, v and a are coordinates, velocities and accelerations of the modes at the start of the
+  /// step, `end` is the motion of the point at its end. The phase of a mode must advance by at most largest_phase in the step.
   void set(double length, int pieces, const double* q, const double* v, const double* a, const Sample& end) {
     per_length_ = 1 / length;
     Lane start = Lane::Zero();

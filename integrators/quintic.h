@@ -35,14 +35,14 @@ class Quintic {
     const double s = (t - begin_) / length_;
     return (2 * c_[2] + s * (6 * c_[3] + s * (12 * c_[4] + s * 20 * c_[5]))) / (length_ * length_);
   }
-  /// Returns the times between both ends at which the velocity changes sign, in ascending order.
+  /// Returns the times between t0 and t1 at which the velocity changes sign, in ascending order.
   [[nodiscard]] SignChanges<4> turns() const {
     SignChanges<4> turns = sign_changes(std::array{c_[1], 2 * c_[2], 3 * c_[3], 4 * c_[4], 5 * c_[5]});
     for (double& t : turns.at) t = begin_ + t * length_;
     return turns;
   }
-  /// Bounds of the position between both ends: the least and the largest coefficient of the polynomial in Bernstein form. The
-  /// polynomial does not leave them, but need not reach them.
+  /// Bounds of the position between t0 and t1: the least and the largest coefficient of the polynomial in Bernstein form. The
+  /// position is within the bounds at all times, but need not reach them.
   struct Bounds {
     double least = 0, most = 0;  ///< bounds of the interpolated position [m]
   };

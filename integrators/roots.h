@@ -8,7 +8,8 @@
 namespace softland {
 
 namespace internal {
-/// A reference to a function double -> double, which must outlive it. It keeps the solver out of the templates of this header.
+/// A reference to a function double -> double, which must outlive the reference. With this type the solver is not a template,
+/// so that its code is compiled once, in roots.cc.
 struct Function {
   const void* object;
   double (*call)(const void* object, double at);

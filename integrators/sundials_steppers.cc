@@ -83,7 +83,7 @@ class Context {
 class SundialsStepper : public Stepper {
  public:
   explicit SundialsStepper(const OdeSystem& system) : system_(system), y_(new_vector()), weights_(new_vector()) {
-    // Fused operations add all terms of a stage in one call. The vectors are so short that the calls cost most of the time.
+    // Let SUNDIALS add all terms of a stage in one call: the vectors are so short that calls take most of the time.
     N_VEnableFusedOps_Serial(y_.get(), SUNTRUE);
     last_.rates.resize(system.size - system.frequencies.size());
   }
@@ -134,7 +134,7 @@ class SundialsStepper : public Stepper {
     auto* me = static_cast<SundialsStepper*>(self);
     const double* state = N_VGetArrayPointer(y);
     double* out = N_VGetArrayPointer(dydt);
-    // A step begins where the last one ended or where the integration restarted: the rates there are known already.
+    // At the start of a step, where the last step ended or the integration restarted, the rates are already known.
     const Evaluation& known = me->last_.is_at(t, state)    ? me->last_
                               : me->begin_.is_at(t, state) ? me->begin_
                                                            : me->evaluate(t, state);
@@ -142,7 +142,7 @@ class SundialsStepper : public Stepper {
     std::copy_n(state + modes, modes, out);
     std::copy(known.rates.begin(), known.rates.end(), out + modes);
     for (std::size_t i = 0; i < me->system_.size; ++i) {
-      if (!std::isfinite(out[i])) out[i] = 1e100;  // the error test fails, and the step is repeated with a shorter length
+      if (!std::isfinite(out[i])) out[i] = 1e100;  // makes the error test of SUNDIALS fail, so that the step is shortened
     }
     return 0;
   }
@@ -279,9 +279,9 @@ class DirkStepper final : public SundialsStepper {
            ok(ARKStepWFtolerances(memory_, &SundialsStepper::error_weights), "ARKStepWFtolerances") &&
            ok(ARKStepSetLinearSolver(memory_, solver_.get(), matrix_.get()), "ARKStepSetLinearSolver") &&
            ok(ARKStepSetJacFn(memory_, &SundialsStepper::jacobian), "ARKStepSetJacFn") &&
-           // Factorise at every change of the step length. SUNDIALS keeps its estimate of the convergence rate until then.
-           // After an iteration that converged fast by chance, it would stop later ones too early, with errors of a thousand
-           // tolerances.
+           // Factorise at every change of the step length. SUNDIALS keeps its estimate of the nonlinear iteration's convergence
+           // rate until it factorises. If an estimate were too good by chance, SUNDIALS would stop later iterations too early,
+           // with errors of a thousand tolerances.
            ok(ARKStepSetDeltaGammaMax(memory_, smallest_change_of_step), "ARKStepSetDeltaGammaMax") &&
            ok(ARKStepSetJacEvalFrequency(memory_, steps_of_a_jacobian), "ARKStepSetJacEvalFrequency") &&
            ok(ARKStepSetPredictorMethod(memory_, predictor_), "ARKStepSetPredictorMethod") &&

@@ -24,7 +24,7 @@ double square_distance(const SpacePoint& a, const SpacePoint& b) {
 std::vector<SpacePoint> start_centres(std::span<const SpacePoint> points, std::size_t count, std::uint64_t seed,
                                       std::size_t start) {
   std::vector<SpacePoint> centres;
-  std::vector<double> square(points.size(), 1.0);  // weights of the points; the first centre is drawn with equal ones
+  std::vector<double> square(points.size(), 1.0);  // probabilities of the points for the draw of a centre, up to a factor
   while (centres.size() < count) {
     double sum = 0;
     for (const double one : square) sum += one;
@@ -103,7 +103,7 @@ Classes classes_of(std::span<const SpacePoint> points, std::size_t count, std::u
     if (one.square < best.square) best = std::move(one);
   }
   std::sort(best.classes.centres.begin(), best.classes.centres.end());
-  // Repeat the iteration with the sorted centres, which gives the shares of the classes in this order.
+  // Repeat the iteration with the centres in ascending order, so that the shares of the points are in the same order.
   return settle(points, std::move(best.classes.centres)).classes;
 }
 

@@ -4,10 +4,9 @@
 //   minimise  sum_i min_c |x_i - c|^2   over `count` centres c
 //
 // For a measured quantity this is the quantizer of least mean square error. Its classes are narrow where points are dense and
-// wide where they are sparse. Their widths lie between those of classes of equal shares, whose outermost classes are very wide,
-// and equal widths. Lloyd's iteration finds the centres from several starts; a better local minimum may exist. The centres of a
-// start are drawn one by one from the points, with a probability in proportion to the square distance to the nearest centre
-// drawn before.
+// wide where they are sparse, but less so than classes with equal numbers of points, whose outermost classes are very wide.
+// Lloyd's iteration finds the centres from several starts; a better local minimum may exist. The centres of a start are drawn
+// one by one from the points, with a probability in proportion to the square distance to the nearest centre drawn before.
 //
 // Sources: S. P. Lloyd, "Least squares quantization in PCM", IEEE Trans. Inf. Theory 28 (1982) 129; J. Max, "Quantizing for
 // minimum distortion", IRE Trans. Inf. Theory 6 (1960) 7; D. Arthur & S. Vassilvitskii, "k-means++", SODA 2007 (starts).

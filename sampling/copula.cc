@@ -20,7 +20,7 @@ void require_in_range(double value) {
   require(-1 <= value && value <= 1, "a correlation of " + rounded_text(value) + " must be between -1 and 1");
 }
 
-// Returns the names of the variables with the largest parts of an eigenvector, at least half of its largest element in size.
+// Returns the names of the variables whose elements of an eigenvector are at least half as large as its largest element.
 std::string main_parts(const Eigen::VectorXd& vector, const std::vector<std::string>& names) {
   const double largest = vector.cwiseAbs().maxCoeff();
   std::string parts;

@@ -4,10 +4,10 @@
 //
 // u, v are uniform in (0, 1), Phi is the standard normal distribution, R the correlation matrix, L its lower Cholesky factor:
 // v_1 = u_1. R is the correlation of the underlying normal variables. If the variables have other distributions, their own
-// correlation is smaller in size. Their rank correlation (Spearman) does not depend on the distributions, rho_S = 6/pi asin(rho
-// / 2), and neither does Kendall's tau = 2/pi asin(rho). Extreme values of two variables are independent in the limit for any
-// rho < 1 (no tail dependence). rho = +-1 makes R singular and is refused: two such variables are one. Source: R. B. Nelsen,
-// "An Introduction to Copulas", 2nd ed. 2006; W. H. Kruskal, J. Am. Stat. Assoc. 53 (1958) 814 (ranks).
+// correlation is smaller in size. With rho an element of R, the rank correlation of the variables (Spearman) is rho_S = 6/pi
+// asin(rho / 2), and Kendall's tau is 2/pi asin(rho), for any distributions. Extreme values of two variables are independent in
+// the limit for any rho < 1 (no tail dependence). rho = +-1 is refused, because R is then singular: the two variables are one.
+// Source: R. B. Nelsen, "An Introduction to Copulas", 2nd ed. 2006; W. H. Kruskal, J. Am. Stat. Assoc. 53 (1958) 814 (ranks).
 #pragma once
 
 #include <Eigen/Core>

@@ -35,8 +35,8 @@ Normal logarithm_of(const Lognormal& d) {
   return {.mean = std::log(d.mean) - variance / 2, .standard_deviation = std::sqrt(variance)};
 }
 
-// For each kind of distribution, functions that check its parameters, return its support and its quantile, and return the
-// probabilities of a value of at most x (up_to) and of a value below x (below).
+// Functions for each kind of distribution: check() tests the parameters, support_of() and quantile_of() return support and
+// quantile, up_to() the probability of a value of at most x, below() that of a value below x.
 
 void check(const Normal& d) {
   require_finite("mean", d.mean);
@@ -124,8 +124,8 @@ struct Moments {
   double mean, standard_deviation;
 };
 
-// Returns mean and standard deviation of value(t) for a random t with a density that is smooth between the breaks. Gauss
-// quadrature with eight points between two breaks is exact for polynomials of degree 15.
+// Returns mean and standard deviation of value(t) for a random t in the range of `breaks`, an ascending list. The density of t
+// must be smooth between two breaks, where Gauss quadrature with eight points is exact for polynomials of degree 15.
 template <class Value, class Density>
 Moments moments(const std::vector<double>& breaks, Value value, Density density) {
   static const GaussRule rule = gauss_rule(8);
@@ -146,7 +146,7 @@ Moments moments(const std::vector<double>& breaks, Value value, Density density)
   return {.mean = mean, .standard_deviation = std::sqrt(variance)};
 }
 
-// Returns breaks for the quadrature of a standard normal variable, from low to high in steps of at most 0.5.
+// Returns the ends of the intervals of quadrature over a standard normal variable, from low to high in steps of at most 0.5.
 std::vector<double> normal_breaks(double low, double high) {
   const int count = std::max(1, static_cast<int>(std::ceil((high - low) / 0.5)));
   std::vector<double> breaks;
@@ -154,8 +154,8 @@ std::vector<double> normal_breaks(double low, double high) {
   return breaks;
 }
 
-// Number of standard deviations up to which a normal density is integrated. It is 2e-37 of its largest value there, and adds
-// nothing to a moment beyond.
+// Number of standard deviations up to which a normal density is integrated. At this distance from the mean the density is
+// 2e-37 of its largest value; the rest of the range changes no digit of a moment.
 constexpr double far_out = 13;
 
 Moments moments_within(const Normal& d, const Interval& x) {
@@ -171,7 +171,8 @@ Moments moments_within(const Lognormal& d, const Interval& x) {
   const Normal logarithm = logarithm_of(d);
   const double s = logarithm.standard_deviation;
   const double low = x.low > 0 ? std::max((std::log(x.low) - logarithm.mean) / s, -far_out) : -far_out;
-  // The integrand of the second moment, exp(2 s z) times a normal density, has its maximum at z = 2 s, so integrate farther.
+  // The integrand of the second moment, exp(2 s z) times a normal density, has its maximum at z = 2 s instead of 0, so integrate
+  // farther by 2 s.
   const double high = std::min((std::log(x.high) - logarithm.mean) / s, far_out + 2 * s);
   return moments(
       normal_breaks(low, high), [&](double z) { return std::exp(logarithm.mean + s * z); }, standard_normal_density);

@@ -11,8 +11,9 @@
 // (1996) 361. So an empirical distribution has no value outside the given values, a step where values are equal, and a variance
 // slightly below that of the values.
 //
-// Each may be truncated to [low, high]: X given low <= X <= high. With Q the quantile and F the distribution function of X, the
-// quantile is then Q(F(low-) + p (F(high) - F(low-))), where F(low-) = P(X < low). All numbers are in the unit of the variable.
+// Each distribution of a variable X may be truncated to [low, high]: that of X on condition that low <= X <= high. With Q the
+// quantile and F the distribution function of X, the quantile of the truncated distribution is Q(F(low-) + p (F(high) -
+// F(low-))), where F(low-) = P(X < low). All numbers are in the unit of the variable.
 #pragma once
 
 #include <array>

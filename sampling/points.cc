@@ -19,17 +19,18 @@ std::vector<std::uint32_t> direction_numbers(std::size_t dimensions) {
   std::vector<std::uint32_t> directions;
   for (int r = 0; r < resolved_bits; ++r) {
     // Point s of Boost's sequence is the exclusive or of the direction numbers of the bits that are set in the Gray code of s +
-    // 1. For this s only bit r is set, so the point is direction number r.
+    // 1. For s = 2^(r + 1) - 2 only bit r is set, so the point is direction number r.
     sequence.seed(static_cast<std::uint32_t>((std::uint64_t{2} << r) - 2));
     for (std::size_t i = 0; i < dimensions; ++i) directions.push_back(sequence());
   }
   return directions;
 }
 
-// Returns 64 bits of a scrambled coordinate. The highest 32 are those of `digits` (from the Sobol' sequence) after scrambling,
-// the others are random.
+// Returns 64 bits of a scrambled coordinate. The highest 32 bits are `digits`, the coordinate in the Sobol' sequence, after
+// scrambling; the others are random.
 std::uint64_t scrambled(std::uint64_t key, std::uint32_t digits) {
-  // The random bit of node 2^j + (the first j bits of `digits`) decides whether bit j, counted from the highest, is flipped.
+  // Bit j, counted from the highest, is flipped if a random bit is 1, which depends on the j higher bits: on the node of a
+  // binary tree with the number 2^j + (the first j bits of `digits`).
   std::uint32_t flips = 0;
   for (unsigned j = 0; j < resolved_bits; ++j) {
     const std::uint64_t node = (std::uint64_t{digits} | std::uint64_t{1} << resolved_bits) >> (resolved_bits - j);
@@ -72,7 +73,7 @@ SamplePoints::SamplePoints(PointSet kind, std::size_t dimensions, std::uint64_t 
              "dimensions = " + std::to_string(dimensions) + " must be between 1 and " + std::to_string(most_dimensions));
   require_of("size", 1 <= size && size <= largest_size,
              "size = " + std::to_string(size) + " must be between 1 and " + std::to_string(largest_size));
-  // Derive the keys of all dimensions from one number of the stream, so that its other numbers remain unused.
+  // Derive the keys of all dimensions from the first number of the random stream; other uses of the stream may take the others.
   for (std::size_t i = 0; i < dimensions; ++i) keys_.push_back(split_mix_64(random_bits(seed, stream, 0), i));
   if (kind == PointSet::sobol) directions_ = direction_numbers(dimensions);
 }

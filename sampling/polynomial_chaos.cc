@@ -16,7 +16,7 @@ namespace {
 using Exponents = std::vector<int>;
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-constexpr int highest_degree = 50;  // higher powers of a normal variable exceed all other terms in any sample
+constexpr int highest_degree = 50;  // in any sample, higher powers of a normal variable are larger than all other terms
 constexpr double candidates_per_figure = 10;
 
 // Returns the values of the orthonormal polynomials of degree 0, ..., degree for a coordinate u of the unit cube: Legendre
@@ -67,8 +67,8 @@ struct Pursuit {
 };
 
 // Chooses at most `most` polynomial terms to fit the figures `y` by matching pursuit, the constant first. Row j of `columns`
-// holds the values of all terms at the point of figure j. `held` are such rows held back for validation, `held_y` their
-// figures.
+// holds the values of all terms at the point of figure j. The rows of `held`, of the same form, and their figures `held_y` are
+// not fitted: they measure the errors of prediction.
 Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::Index most, const Eigen::MatrixXd& held,
                const Eigen::VectorXd& held_y) {
   const Eigen::RowVectorXd sizes = columns.colwise().norm();
@@ -139,7 +139,7 @@ std::vector<double> prediction_errors(const Eigen::MatrixXd& columns, const Eige
     std::vector<Eigen::Index> kept, held;
     for (std::size_t j = 0; j < fold.size(); ++j) (fold[j] == f ? held : kept).push_back(static_cast<Eigen::Index>(j));
     const Pursuit made = pursue(columns(kept, Eigen::all), y(kept), most, columns(held, Eigen::all), y(held));
-    // If matching pursuit has found fewer terms, its last error counts for all larger numbers of terms.
+    // If matching pursuit stopped with fewer terms, use its last error for all larger numbers of terms.
     for (std::size_t k = 0; k < errors.size(); ++k) errors[k] += made.errors[std::min(k, made.errors.size() - 1)];
   }
   return errors;

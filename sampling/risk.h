@@ -7,8 +7,8 @@
 //   worst      the largest value
 //
 // CVaR uses every value of the tail, so that a single value changes it little. A quantile depends on one or two values. The
-// mean plus a multiple of the standard deviation also increases with values far on the good side. The worst value grows with
-// the size of the sample. Source: R. T. Rockafellar & S. Uryasev, Journal of Risk 2 (2000) 21.
+// mean plus a multiple of the standard deviation also increases if good (small) values lie farther from the mean. The worst
+// value grows with the size of the sample. Source: R. T. Rockafellar & S. Uryasev, Journal of Risk 2 (2000) 21.
 #pragma once
 
 #include <span>

@@ -9,10 +9,11 @@
 namespace softland {
 namespace {
 
-// Contribution of each row of the design to the sums that estimate Sobol' indices, with centred figures f.
+// Contribution of each row of the design to the sums that estimate Sobol' indices. f is the figure of merit less its mean, A
+// and B are the two points of the row (sobol_indices.h).
 struct Rows {
   std::size_t dimensions, count;
-  std::vector<double> sums, squares;  // f(A) + f(B) and f(A)^2 + f(B)^2 of each row's points A and B
+  std::vector<double> sums, squares;  // f(A) + f(B) and f(A)^2 + f(B)^2 of each row
   // Terms of the sums for the first-order and the total index, before the division by the variance. Element j d + i belongs to
   // row j and variable i of d variables.
   std::vector<double> first_order, total;
@@ -39,8 +40,8 @@ struct Estimate {
   std::vector<double> first_order, total;
 };
 
-// Estimates Sobol' indices from as many rows of the design as there are, with the indices row_at(0), row_at(1), ...: all rows
-// once, or the rows that a bootstrap repetition draws.
+// Estimates Sobol' indices from rows.count rows of the design, with the indices row_at(0), row_at(1), ...: every row once, or
+// the rows that a bootstrap repetition draws with replacement.
 template <class RowAt>
 Estimate estimate(const Rows& rows, RowAt row_at) {
   const std::size_t d = rows.dimensions;

@@ -66,7 +66,7 @@ double internal::quantile_of_sorted(std::span<const double> sorted, double p) {
   const double place = p * static_cast<double>(sorted.size() - 1);
   const std::size_t j = std::min(static_cast<std::size_t>(place), sorted.size() - 1);
   const double fraction = place - static_cast<double>(j);
-  // Return the value itself if interpolation would multiply 0 by infinity or subtract two infinite values.
+  // Return the value x_j itself where the interpolation below would give NaN: 0 times infinity, or infinity minus infinity.
   if (fraction == 0 || std::isinf(sorted[j])) return sorted[j];
   const double step = sorted[j + 1] - sorted[j];
   if (std::isinf(step)) return (1 - fraction) * sorted[j] + fraction * sorted[j + 1];
@@ -103,7 +103,7 @@ Histogram histogram(std::span<const double> sample, std::size_t most_bins) {
   if (!std::isfinite(bins)) bins = static_cast<double>(most_bins);
   made.counts.resize(static_cast<std::size_t>(std::clamp(bins, 1.0, static_cast<double>(most_bins))));
   for (const double x : finite) {
-    // If the range of the values overflows, compute with a quarter of each value.
+    // If high - low overflows, compute the position in the range from a quarter of each number.
     const double part = std::isfinite(range) ? (x - made.low) / range : (x / 4 - made.low / 4) / (made.high / 4 - made.low / 4);
     const double place = range > 0 ? part * static_cast<double>(made.counts.size()) : 0;
     ++made.counts[std::min(static_cast<std::size_t>(place), made.counts.size() - 1)];
