@@ -293,8 +293,8 @@ class MeasurementReader {
     }
     require(!m.values.empty(), [&] { return fmt::format("{}: all rows are before t = 0; give shift to move them", path); });
   }
-  // Returns the factor that converts the recorded values of the channel, as trace_of() returns them, to the SI unit of the
-  // quantity: the key per_volt, or the size of the unit that the key `unit` or the file names.
+  // Returns the factor that converts the recorded values of the channel (trace_of()) to the SI unit of the quantity. It is the
+  // key per_volt, or else the size of the unit that the key `unit` or the file names.
   [[nodiscard]] double unit_of_trace(const BenchQuantity& kind, const Channel& channel) const {
     if (has("per_volt")) {
       refuse_where(!channel.is_voltage && !channel.unit.empty(), "per_volt",

@@ -26,7 +26,7 @@
 //   per_volt = "50 mm/s"             # size of one volt of the channel
 //   threshold = "1.5 V"              # for a contact: it is closed where the voltage is above the threshold
 //   closed = "below"                 # or where the voltage is below
-//   hysteresis = "0.2 V"             # width of the band about the threshold
+//   hysteresis = "0.2 V"             # width of a band about the threshold that a change of state must cross
 //   merge = "100 ns"                 # shorter states are ignored
 #pragma once
 
@@ -58,8 +58,8 @@ inline constexpr std::string_view of_contact = "contact";
 
 struct BenchMeasurement {
   std::string quantity;                 ///< name of the measured quantity, one of bench_quantities()
-  std::string drive = {};               ///< name of the driven electrode or piezo; empty where it is not given
-  std::string device = {};              ///< name of the measured device; empty where it is not given
+  std::string drive = {};               ///< name of the driven electrode or piezo; empty if the file does not name it
+  std::string device = {};              ///< name of the measured device; empty if the file does not name it
   std::vector<double> values = {};      ///< measured values [SI unit]; for a contact, times of its first closings and openings
   std::vector<double> errors = {};      ///< standard deviation of each value [SI unit]
   std::vector<double> levels = {};      ///< commanded voltage of each measured value [V]; empty if the file names none

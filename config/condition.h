@@ -19,7 +19,7 @@ enum class Comparison { below, at_most, equal, at_least, above };
 struct Condition {
   Figure figure;
   Comparison comparison = Comparison::below;
-  double limit = 0;      ///< limit of the figure [its SI unit; if of_step, multiples of the figure under a voltage step]
+  double limit = 0;      ///< limit of the figure [its SI unit; if of_step, multiples of its value under the plain voltage step]
   std::string text;      ///< the condition as the user wrote it
   bool of_step = false;  ///< true if the limit is in multiples of the figure under a plain voltage step
 
@@ -39,7 +39,7 @@ struct Condition {
 
 /// The statistic over simulated devices (process variation) that a search minimises.
 struct RobustMeasure {
-  Risk risk;                       ///< statistic of the costs of the devices that a search minimises, unless `yield` is set
+  Risk risk;                       ///< statistic over the devices' costs that a search minimises; unused if `yield` is set
   std::optional<Condition> yield;  ///< condition; a search maximises the share of devices that fulfil it
   std::string text;                ///< the statistic as the user wrote it
 };

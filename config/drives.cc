@@ -95,7 +95,7 @@ void read_list(const SectionReader& in, std::string_view key, ParameterKind kind
 template <class Family>
 Waveform read_parameters(const SectionReader& in, const References& to) {
   Family waveform;
-  double base = 0;  // last absolute voltage level of the waveform, to which voltage differences are added [V]
+  double base = 0;  // last voltage level read so far [V]; a percentage of a voltage difference refers to this level
   for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
     const auto* one = std::get_if<double Family::*>(&p.member);
     if (one == nullptr) {

@@ -23,7 +23,7 @@ struct SceneEdit {
 [[nodiscard]] std::string edited_scene(std::string_view text, const std::string& name, const std::vector<SceneEdit>& edits);
 
 /// Returns the text of a scene with the section [spread] (process variation) of another scene, which replaces an existing
-/// [spread] or is added at the end. Throws InvalidInput if an existing spread is not a section with a header.
+/// [spread] or is added at the end. Throws InvalidInput if an existing spread has no header [spread] or [spread.NAME].
 [[nodiscard]] std::string with_spread_of(std::string_view text, const std::string& name, const SceneFile& other);
 
 }  // namespace softland

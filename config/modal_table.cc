@@ -80,7 +80,7 @@ SplineEnd far_end_of(const SectionReader& in) {
   return in.is_given(keys::far_anchor) && in.text(keys::far_anchor) == clamped ? SplineEnd::clamped : SplineEnd::free;
 }
 
-// Returns the offsets of the structure's face at rest, by position; empty if the structure is straight at rest.
+// Returns the offsets of the structure's face at rest [m], one per position of the table; empty if all offsets are 0.
 std::vector<double> offsets_of(ModeTable& table) {
   const bool is_straight = std::ranges::all_of(table.rest_offsets, [](double offset) { return offset == 0; });
   return is_straight ? std::vector<double>() : std::move(table.rest_offsets);

@@ -99,7 +99,7 @@ class Plan {
   /// Returns true if a search for a Pareto front chooses the points; pareto() names the figures of merit that it minimises.
   [[nodiscard]] bool is_search() const { return is_search_; }
   [[nodiscard]] const std::string& pareto() const { return pareto_; }
-  /// Returns the values of the variables [SI unit] at a point of the unit cube, whose coordinates are shares of their ranges.
+  /// Returns the values of the variables [SI unit] at a point of the unit cube: coordinate 0 is `low`, 1 is `high`.
   [[nodiscard]] std::vector<double> values_in_box(std::vector<double> place) const;
   /// Returns the values of the variables at point k of the plan, in the order of the variables [SI unit]. Throws InvalidInput
   /// for the points of a search.

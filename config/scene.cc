@@ -124,7 +124,7 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
     warnings.push_back(fmt::format(
         "{}: surface.residual_stress has no effect on a cantilever; surface.cantilever_load selects its effect", file.name));
   }
-  constexpr double wide = 5;          // width over thickness above which the beam bends more like a plate
+  constexpr double wide = 5;          // ratio of width to thickness above which a beam bends more like a plate
   constexpr double rounding = 1e-12;  // a width of exactly five thicknesses, as 20 um to 4 um, must give no warning
   const Structure& structure = device.structure;
   const auto* const beam = structure.find<Beam>();
@@ -197,7 +197,8 @@ void warn_of_fixed_sections(const SceneFile::Impl& file, const DeviceSpread& spr
 }
 
 /// Returns the sections of the scene as one TOML table: those in the file, and those whose defaults apply without a section.
-/// keys_of(reader) must return the keys of a section, for example with_defaults(). resolved_spread() gives [spread].
+/// The function keys_of(reader) must return the keys of a section, as SectionReader::with_defaults() does. The section [spread]
+/// is that of resolved_spread().
 template <class KeysOf>
 toml::table sections_of(const SceneFile::Impl& file, KeysOf&& keys_of) {
   toml::table root;

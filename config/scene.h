@@ -1,4 +1,5 @@
-// Reads and checks a scene file, which describes a switch, its drives and the simulation. All other code uses numbers in SI.
+// Reads and checks a scene file, which describes a switch, its drives and the simulation, and converts all quantities to SI
+// units, in which all other code computes.
 #pragma once
 
 #include <algorithm>
@@ -171,7 +172,7 @@ struct SimulateOptions {
   double tolerance = 0;    ///< relative tolerance of the integrator; 0: derived from accuracy
   double open_at = std::numeric_limits<double>::quiet_NaN();  ///< time of the command to open [s]; NaN: see open_command()
   bool automatic_effects = false;  ///< true to leave physical effects (force laws) out of the model: see effects_tolerance
-  /// An effect stays in the model if it changes first contact time, impact velocity or highest rebound by a larger share.
+  /// An effect stays in the model if it changes first contact time, impact velocity or highest rebound by more than this share.
   double effects_tolerance = 1e-3;
 };
 
@@ -226,7 +227,7 @@ struct Scene {
   /// Names in need_pull_in of the electrodes of which only the voltage limits are in multiples of Vsp or Vdp.
   std::vector<std::string> limits_in_pull_in = {};
   /// Constant voltage of each drive while the pull-in voltages of another drive are computed, in the order of Switch::drives():
-  /// the hold voltage if it does not depend on Vsp or Vdp, otherwise 0 V. For the dispersion force, the factor on it minus 1.
+  /// the hold voltage if it does not depend on Vsp or Vdp, otherwise 0 V; for the dispersion force, the factor on it minus 1.
   std::vector<double> standing;
   std::vector<std::string> file_notes = {};  ///< notes for the user on files of instruments, one line each
   std::vector<std::string> warnings;

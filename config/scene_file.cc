@@ -48,7 +48,7 @@ void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::
     }
     const auto* inner = node.as_table();
     if (!inner) continue;
-    // Neither the header of this section nor the dotted key alone is too deep, but together their path may be.
+    // The header of a section and a dotted key in the section may each obey the limit while their joint path exceeds it.
     require(parts < internal::deepest_path, fmt::format("{}: a key has more than {} parts", place, internal::deepest_path));
     record_origins(impl, *inner, key_path, parts + 1);
   }

@@ -132,7 +132,7 @@ nlohmann::json to_json(const toml::node& node) {
   if (const auto* integer = node.as_integer()) return integer->get();
   if (const auto* number = node.as_floating_point())
     return std::isfinite(number->get()) ? nlohmann::json(number->get()) : nullptr;
-  return inline_text(node);  // a date or a time becomes text
+  return inline_text(node);  // JSON has no dates and times: write them as text
 }
 
 toml::table parse_toml(std::string_view text, const std::string& name) {

@@ -58,7 +58,7 @@ struct Key {
   std::vector<std::string_view> words = {};
   std::string_view fallback = {};  ///< default value of the key as TOML; empty for none
   bool required = false;
-  std::vector<std::string_view> only_for = {};    ///< values of Section::selector for which this key exists; empty: all
+  std::vector<std::string_view> only_for = {};    ///< values of the key Section::selector with which the key exists; empty: all
   std::vector<std::string_view> instead_of = {};  ///< keys that may be given instead of this key, even if it is required
   std::string_view about = {};                    ///< description of the key, one line
   std::string_view beyond = {};                   ///< advice for a user who needs a value outside the key's range

@@ -200,8 +200,8 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
                                            hint(parts.back(), candidates)));
 }
 
-/// Converts the numbers of an entry of [spread], such as a standard deviation, to the unit of the varied quantity: the SI unit
-/// of the varied key, or none if the quantity is a factor on the keys.
+/// Converts the numbers of an entry of [spread], such as a standard deviation, to the unit of the varied quantity. This is the
+/// SI unit of the varied key; a quantity that is a factor on the keys has no unit.
 class EntryUnits {
  public:
   EntryUnits(const SectionReader& in, const std::vector<FoundKey>& keys) : in_(in), keys_(keys) {

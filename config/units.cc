@@ -201,7 +201,7 @@ void apply_factor(UnitScale& scale, std::string_view factor, int sign) {
   if (!unit) throw InvalidInput(fmt::format("unknown unit '{}'", shortened(name)));
   for (std::size_t i = 0; i < scale.dimension.powers.size(); ++i) {
     scale.dimension.powers[i] += power * unit->dimension.powers[i];
-    // The power of a base unit is limited, because a quantity may be written in base units and must be readable again.
+    // Limit the power of a base unit: a quantity may be written in base units, and parse_power() must be able to read them.
     if (std::abs(scale.dimension.powers[i]) > largest_power) {
       throw InvalidInput(fmt::format("with '{}' the power of {} in the unit is {}; it must lie between -{} and {}",
                                      shortened(factor), base_units[i], scale.dimension.powers[i], largest_power, largest_power));

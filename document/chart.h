@@ -22,10 +22,10 @@ using CurveTable = std::map<std::string, std::vector<double>>;
 using CurveTables = std::map<std::string, CurveTable>;
 
 /// The role of a curve determines its colour and line style. In reports on a search for a waveform, `best` is a curve of the
-/// found waveform, and `baseline` of the plain voltage step. `evaluations` are dots, one for each waveform that the search
-/// tried; `measured` are dots of measured values. `limit` is a bound, such as a voltage limit. `device` and `device_before`
-/// are thin lines, one for each device of a sample, under the found waveform and under the plain voltage step. `third`,
-/// `fourth` and `fifth` are further curves.
+/// found waveform, and `baseline` a curve of the plain voltage step. The role `evaluations` has a dot for each waveform that
+/// the search tried, the role `measured` a dot for each measured value. The role `limit` is for a bound, such as a voltage
+/// limit. Curves of the roles `device` and `device_before` are thin lines, one for each device of a sample, under the found
+/// waveform and under the plain voltage step. The roles `third`, `fourth` and `fifth` are for further curves.
 enum class Role { best, baseline, evaluations, third, fourth, fifth, measured, limit, device, device_before };
 enum class AxisScale { linear, logarithmic };
 

@@ -40,8 +40,8 @@ const char* role_name(Role role) {
 
 const char* scale_name(AxisScale scale) { return scale == AxisScale::linear ? "linear" : "log"; }
 
-// Returns the values of a column in the given rows as JSON: as integer steps by packed(), or as numbers of six digits if
-// `logarithmic`, because rounding to steps of equal size would hide small values on a logarithmic axis.
+// Returns the values of a column in the given rows as JSON: integer steps from packed(), or numbers of six digits if
+// `logarithmic`. On a logarithmic axis, rounding to steps of equal size would hide small values.
 json rows_json(const std::vector<double>& column, const std::vector<std::size_t>& rows, bool logarithmic) {
   std::vector<double> kept;
   double largest = 0;

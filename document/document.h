@@ -76,7 +76,7 @@ struct KeyNumber {
   bool is_words = false;    ///< true if the value is words instead of a number
 };
 
-/// What a user needs to compute the results of a page again: version, command, scene, seed and tolerance.
+/// The data that a user needs to compute the results of a page again: version, command, scene, seed and tolerance.
 struct MadeAgain {
   std::string version, command;  ///< version of the program, and command line, that gave the results
   std::string made_with;         ///< compiler and machine that gave the results, one line; empty if unknown

@@ -38,7 +38,7 @@ struct Prefix {
 /// Formats as quantity() does, but gives 0 the prefix of `neighbour`, which stands beside it: "803 nm" and "0 nm".
 [[nodiscard]] std::string quantity_beside(double value, double neighbour, std::string_view unit, int digits = 3);
 
-/// Formats as quantity() does, but also rounds to the digit of `error` [unit]; a NaN error is unknown and ignored.
+/// Formats as quantity() does, but also rounds to the last shown digit of `error` [unit]; a NaN error is unknown and ignored.
 [[nodiscard]] std::string quantity_within(double value, double error, std::string_view unit, int digits = 3);
 
 /// Formats the error of a value that quantity_within() shows, in the prefix of the value: one significant digit, two when the

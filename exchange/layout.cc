@@ -100,7 +100,7 @@ char separator_of(const std::vector<Line>& lines) {
 std::vector<bool> numeric_columns(const std::vector<Line>& last, char separator) {
   std::vector<bool> is_numeric;
   for (const bool without_prose : {true, false}) {
-    std::vector<int> excess;  // for each column, number of cells with a number minus number of other and missing cells
+    std::vector<int> excess;  // for each column, number of cells with a number minus number of missing cells and of words
     CellList cells;
     int lines = 0;
     for (const Line& line : last) {

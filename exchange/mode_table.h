@@ -23,7 +23,7 @@ struct ModeFound {
   int number = 0;        ///< number of the mode in the file, from 1
   double frequency = 0;  ///< frequency of the mode [Hz]
   ModeKind kind = ModeKind::bending;
-  double share = 0;  ///< squared motion of this kind over the whole squared motion of the nodes; 1 if a file has one component
+  double share = 0;  ///< squared motion of this kind over the whole squared motion; 1 if a file has only one component
   /// Mean displacement of each section: in the switch's direction of motion, in-plane across the axis, and along the axis.
   std::vector<double> along, across, axial;
   /// Displacement of each section by its rotation about the axis, at a distance of half the extent of the mesh.

@@ -20,7 +20,7 @@ struct NodalMode {
   double frequency = std::numeric_limits<double>::quiet_NaN();
   double modal_mass =
       std::numeric_limits<double>::quiet_NaN();  ///< modal mass in the unit of the file; NaN if the file does not give it
-  std::vector<Vector3> motion;                   ///< displacement of each node in the mode, in the unit of the file
+  std::vector<Vector3> motion;                   ///< displacement of each node in the mode, at the scale of `modal_mass`
   std::string name;                              ///< name of the mode in messages, such as "mode 1"
   bool is_used = true;                           ///< false for a mode that the reduced-order model in the file leaves out
 };

@@ -212,8 +212,8 @@ void RowTimer::set_even_from_numbers() {
           column_->lines[i], static_cast<std::size_t>(column_->column),
           fmt::format("the number of the sample is {}, and that above is {}; numbers must be consecutive", raw[i], raw[i - 1]));
   }
-  // Samples are numbered from 0 in a column whose unit is samples, from 1 in EasyWave files (column xpos), and in other files
-  // from the first number in the column if it is 0 or 1.
+  // Samples are numbered from 0 in a column whose unit is samples, and from 1 in EasyWave files (column xpos). In other files,
+  // they are numbered from 1 if the column begins with 1, otherwise from 0.
   const bool counts_from_one = !unit_ && (raw.front() == 1 || (column_->name == "xpos" && raw.front() > 1));
   const double first = raw.front() - (counts_from_one ? 1 : 0);
   require_count(first + static_cast<double>(count_));

@@ -22,7 +22,7 @@ struct DormandPrince {
   static constexpr double least_growth = 0.2, most_growth = 10;
   /// Largest growth factor of the step length after the first step, whose length is only a guess.
   static constexpr double first_growth = 1e4;
-  static constexpr float least_error = -13;  ///< lower bound for the binary logarithm of the last error in the step size control
+  static constexpr float least_error = -13;  ///< lower bound of the last error in the step size control, binary logarithm
   static constexpr double not_finite = 0.1;  ///< factor on the step length after an error estimate that is not finite
 };
 

@@ -37,9 +37,9 @@ class ModalMotion {
     push_.resize(omega_.size());
   }
 
-  /// Sets the integration step of duration `length` [s] to interpolate. knot() then returns the motion at the ends of `pieces`
-  /// equal intervals of the step. q, v and a are coordinates, velocities and accelerations of the modes at the start of the
-  /// step, `end` is the motion of the point at its end. The phase of a mode must advance by at most largest_phase in the step.
+  /// Sets the integration step of duration `length` [s] to interpolate. The step is divided into `pieces` equal intervals, at
+  /// whose ends knot() returns the motion. The coordinates q, velocities v and accelerations a of the modes are at the start of
+  /// the step, the motion `end` of the point at its end. The phase of a mode must advance by at most largest_phase in the step.
   void set(double length, int pieces, const double* q, const double* v, const double* a, const Sample& end) {
     per_length_ = 1 / length;
     Lane start = Lane::Zero();

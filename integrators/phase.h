@@ -17,7 +17,7 @@ struct Turn {
   Lane slack;  ///< 1 - cosine of the phase, without cancellation
 };
 
-/// Returns cosine and sine of a phase by Taylor series at half the phase. The first omitted term is below 1e-18.
+/// Returns cosine and sine of a phase, from Taylor series of both at half the phase. The first omitted term is below 1e-18.
 [[nodiscard]] inline Turn turn(const Lane& phase) {
   constexpr std::size_t degree = 18;
   constexpr auto factors = [] {  // (-1)^floor(k/2) / k!: even k of the cosine, odd k of the sine

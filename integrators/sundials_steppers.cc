@@ -194,7 +194,7 @@ class SundialsStepper : public Stepper {
 
   void load(double t, const double* y, const double* rates, const std::vector<double>& absolute) {
     t_ = t;
-    last_.t = std::numeric_limits<double>::quiet_NaN();  // an evaluation before the discontinuity is not valid after it
+    last_.t = std::numeric_limits<double>::quiet_NaN();  // discard the rates from before the discontinuity
     begin_.t = t;
     begin_.y.assign(y, y + system_.size);
     begin_.rates.assign(rates, rates + last_.rates.size());

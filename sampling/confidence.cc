@@ -44,14 +44,14 @@ Interval quantile_interval(std::span<const double> sample, double p, double conf
   const std::size_t n = sample.size();
   const boost::math::binomial_distribution<> binomial(static_cast<double>(n), p);
   const double tail = (1 - confidence) / 2;
-  // Bisect for the largest l with P(B < l) <= tail, B binomial: the condition holds for l = 0 and up to that l.
+  // Bisect for the largest l with P(B < l) <= tail, where B is binomial: the condition holds for l = 0, and P rises with l.
   const auto fewer = [&](std::size_t l) { return l == 0 ? 0 : cdf(binomial, static_cast<double>(l - 1)); };
   std::size_t low = 0, beyond = n + 1;
   while (beyond - low > 1) {
     const std::size_t middle = (low + beyond) / 2;
     (fewer(middle) <= tail ? low : beyond) = middle;
   }
-  // Bisect for the smallest u with P(B >= u) <= tail, B binomial: the condition holds from that u on, up to u = n + 1.
+  // Bisect for the smallest u with P(B >= u) <= tail: the condition holds for u = n + 1, and P falls with u.
   const auto at_least = [&](std::size_t u) { return u == 0 ? 1 : cdf(complement(binomial, static_cast<double>(u - 1))); };
   std::size_t before = 0, high = n + 1;
   while (high - before > 1) {

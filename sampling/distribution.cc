@@ -171,8 +171,8 @@ Moments moments_within(const Lognormal& d, const Interval& x) {
   const Normal logarithm = logarithm_of(d);
   const double s = logarithm.standard_deviation;
   const double low = x.low > 0 ? std::max((std::log(x.low) - logarithm.mean) / s, -far_out) : -far_out;
-  // The integrand of the second moment, exp(2 s z) times a normal density, has its maximum at z = 2 s instead of 0, so integrate
-  // farther by 2 s.
+  // The integrand of the second moment, exp(2 s z) times a normal density, has its maximum at z = 2 s instead of 0. So
+  // integrate farther by 2 s.
   const double high = std::min((std::log(x.high) - logarithm.mean) / s, far_out + 2 * s);
   return moments(
       normal_breaks(low, high), [&](double z) { return std::exp(logarithm.mean + s * z); }, standard_normal_density);

@@ -35,8 +35,8 @@ std::vector<double> polynomials(Germ germ, int degree, double u) {
   return values;
 }
 
-// Appends to `terms` all polynomial terms whose exponents of the variables before `from` are those in `term`, and whose
-// exponents of the other variables have the sum `degree`.
+// Appends to `terms` all polynomial terms with the exponents term[0], ..., term[from - 1] of the first variables, and with
+// exponents of sum `degree` for the other variables.
 void add_terms(std::vector<Exponents>& terms, Exponents& term, std::size_t from, int degree) {
   if (from + 1 == term.size()) {
     term[from] = degree;

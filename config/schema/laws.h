@@ -35,7 +35,7 @@ void bound_word(Scene& scene, std::size_t entry, std::string_view word) {
       part(scene, entry));
 }
 
-/// Returns the scene key that a field of a law describes, without access to the member that the key sets.
+/// Returns the scene key that a field of a law describes; the caller sets Key::bound, the access to the member of the scene.
 template <class Owner>
 [[nodiscard]] Key described(const Field<Owner>& field) {
   Key key{.name = field.key,

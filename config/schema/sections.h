@@ -21,7 +21,7 @@ inline constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
 /// Permitted dimensions of an electrode's voltages, which may be multiples of its pull-in voltages.
 inline const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in};
 
-/// Returns a key for a number, without access to the member of a scene that the key sets.
+/// Returns a key for a number; the caller sets Key::bound, the access to the member of the scene, or reads the value itself.
 [[nodiscard]] inline Key number(std::string_view name, std::vector<Dimension> dimensions, Range range, std::string_view about) {
   return {.name = name, .dimensions = std::move(dimensions), .range = range, .about = about};
 }

@@ -88,8 +88,8 @@ std::vector<Key> keys_beside_file() {
   return keys;
 }
 
-/// Returns the section [waveform.ENTRY] of the drive `entry`; an empty `entry` means all drives that have no section of their
-/// own. `level` holds the permitted dimensions of a voltage level.
+/// Returns the description of the section [waveform.ENTRY] of the drive `entry`; an empty `entry` means all drives but the
+/// dispersion force, which has its own. `level` holds the permitted dimensions of a voltage level.
 Section section_of(std::string_view entry, const std::vector<Dimension>& level, std::string_view about) {
   std::vector<std::string_view> names;
   std::vector<Key> keys{one_of("family", {}, "shape of the voltage against time").needed(),
