@@ -63,7 +63,7 @@ inline constexpr std::string_view plan_options[] = {"certify",  "samples",   "ta
 struct PlanKey {
   std::string path;         ///< path of the key in the scene, such as "electrode.main.span"
   std::size_t element = 0;  ///< number of the list element that varies, from 1; 0 for a key without a list
-  Quantity base = {};       ///< value of the key in the scene; the variable multiplies this value if it is a factor
+  Quantity base = {};       ///< value of the key in the scene; a variable that is a factor (is_factor) multiplies this value
 };
 
 /// A variable of the plan: sets one key of the scene, or multiplies the values of several keys by one factor.

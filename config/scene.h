@@ -124,7 +124,7 @@ struct Drive {
   bool begins_closed = false;             ///< true when the drive's key before_state is closed: see Scene::begins_closed
   /// Limits of the source; none if unlimited. Without given limits, electrodes of known Vdp have [0, default_limit()].
   std::optional<DriverLimits> limits = {};
-  DriverModel source = {};               ///< voltage source, ideal by default; prepare() adds its load
+  DriverModel source = {};               ///< voltage source, ideal by default; prepare() adds the switch's capacitance as load
   std::optional<double> amplifier = {};  ///< gain of an amplifier after the source; all voltages here are those after it
   SourceErrors errors = {};              ///< errors of the source: gain, offset and delay
 
@@ -226,8 +226,9 @@ struct Scene {
   std::vector<std::string> need_pull_in;
   /// Names in need_pull_in of the electrodes of which only the voltage limits are in multiples of Vsp or Vdp.
   std::vector<std::string> limits_in_pull_in = {};
-  /// Constant voltage of each drive while the pull-in voltages of another drive are computed, in the order of Switch::drives():
-  /// the hold voltage if it does not depend on Vsp or Vdp, otherwise 0 V; for the dispersion force, the factor on it minus 1.
+  /// Constant voltage of each drive while the pull-in voltages of another drive are computed, in the order of Switch::drives().
+  /// It is the hold voltage if this does not depend on Vsp or Vdp, otherwise 0 V; for the dispersion force, the hold level of
+  /// the factor on the force minus 1.
   std::vector<double> standing;
   std::vector<std::string> file_notes = {};  ///< notes for the user on files of instruments, one line each
   std::vector<std::string> warnings;

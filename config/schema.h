@@ -54,7 +54,7 @@ struct Key {
   bool may_be_one = false;  ///< type `quantities`: true if a single quantity may replace the list
   bool is_nested = false;   ///< type `quantities`: true if the value may be a list of lists, which are read in sequence
   std::vector<std::string_view> choices = {};
-  /// Words that may replace an integer, a quantity, or an element of a list of quantities.
+  /// Words, such as "tip" for a position, that may replace an integer, a quantity, or an element of a list of quantities.
   std::vector<std::string_view> words = {};
   std::string_view fallback = {};  ///< default value of the key as TOML; empty for none
   bool required = false;

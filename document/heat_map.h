@@ -18,7 +18,7 @@ struct HeatMapAxis {
 
 struct HeatMap {
   HeatMapAxis x, y;
-  std::string label;  ///< name of the figure whose values the map shows
+  std::string label;  ///< name of the figure of merit whose values the map shows
   std::string unit;
   std::vector<double> values;  ///< value of cell (i, j) at j * x.values.size() + i; NaN: no value
   /// Reason why a cell has no value, as an index into `reasons`; ignored where the cell has a value.
@@ -43,8 +43,8 @@ using ContourLine = std::vector<std::array<double, 2>>;
 /// map.
 [[nodiscard]] bool is_ragged(const std::vector<double>& values, std::size_t columns);
 
-/// The range of values that the colour scale covers. The lowest and highest 2 % of the values are left out if the range would
-/// otherwise be more than three times as wide. If all values are equal, the range is widened.
+/// The range of values that the colour scale covers: all values or, if this would be more than three times as wide, the values
+/// without the lowest and the highest 2 %. If all values are equal, the range is widened.
 struct ColourRange {
   double low = 0, high = 1;
   bool cut_below = false, cut_above = false;

@@ -32,7 +32,7 @@ struct NodalModes {
   std::array<bool, 3> holds{true, true, true};  ///< true if the file has the x, y or z component of the displacements
   std::optional<double> length_unit = {};       ///< unit of length of the node positions that the file names [m]
   bool needs_length_unit = false;               ///< true if the format has no usual unit of length, so that the user must give it
-  std::string normalised_by = {};               ///< why `modal_mass` is known, in words; empty if the file has no modal masses
+  std::string normalised_by = {};  ///< data of the file that give the modal masses, in words; empty without such data
   std::vector<std::string> left_out = {}, notes = {};
 };
 

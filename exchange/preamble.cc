@@ -81,7 +81,8 @@ constexpr Words vertical_keys{"verticalunits", "verticalunit", "yunits", "yunit"
 constexpr Words horizontal_keys{"horizontalunits", "horizontalunit", "xunits",       "xunit",      "hunit",    "timeunits",
                                 "timeunit",        "timebaseunits",  "timebaseunit", "xaxisunits", "xaxisunit"};
 
-/// A file format and words, in lower case, that its preamble and headings contain. If several rows match, the first is used.
+/// A file format, and the words in lower case by which its preamble and headings are recognised. If several rows match, the
+/// first is used.
 struct FormatRow {
   std::string_view name;
   Words words;

@@ -228,7 +228,7 @@ struct PlainTimes {
 
 // Returns true for a netlist with PWL( ). Returns true for lines of time and value that are more likely a PWL source than
 // recorded columns: they have scale suffixes, continuation lines or relative times, or their times are not rounded. Times are
-// relative if some have a plus and others have no sign. A plus before all times, or beside negative times, is a sign.
+// relative if some have a plus and others have no sign. A plus before all times, or beside negative times, is a mere sign.
 bool is_spice_pwl(std::string_view text) {
   constexpr std::size_t enough = 64;
   if (has_pwl_bracket(text)) return true;

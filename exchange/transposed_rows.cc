@@ -13,7 +13,7 @@ namespace softland::internal {
 namespace {
 
 /// The rows of a file in which each row holds all numbers of one channel: `rows` are their cells, `places` their lines in the
-/// file, and `above` the lines before the first of them.
+/// file, and `above` the lines before the row of the first channel.
 struct LyingRows {
   std::vector<Line> above, places;
   std::vector<CellList> rows;

@@ -1,8 +1,8 @@
 // Linear equations whose matrix has the shape of an arrow: a dense core, and blocks along the rest of the diagonal that couple
 // with the core only.
 //
-//   | C  B |        C core x core, D block diagonal, B core x rest, E rest x core. The blocks of D are eliminated one by one. The
-//   | E  D |        work is then proportional to the number of blocks, not to its cube as for a dense matrix.
+//   | C  B |        C core x core, D block diagonal, B core x rest, E rest x core. Eliminating the blocks of D one by one makes
+//   | E  D |        the work proportional to the number of blocks, instead of its cube as for a dense matrix.
 #pragma once
 
 #include <Eigen/LU>

@@ -51,7 +51,7 @@ Interval quantile_interval(std::span<const double> sample, double p, double conf
     const std::size_t middle = (low + beyond) / 2;
     (fewer(middle) <= tail ? low : beyond) = middle;
   }
-  // Bisect for the smallest u with P(B >= u) <= tail: the condition holds for u = n + 1, and P falls with u.
+  // Bisect for the smallest u with P(B >= u) <= tail, where B is binomial: it holds for u = n + 1, and P falls with u.
   const auto at_least = [&](std::size_t u) { return u == 0 ? 1 : cdf(complement(binomial, static_cast<double>(u - 1))); };
   std::size_t before = 0, high = n + 1;
   while (high - before > 1) {

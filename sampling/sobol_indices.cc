@@ -13,7 +13,7 @@ namespace {
 // and B are the two points of the row (sobol_indices.h).
 struct Rows {
   std::size_t dimensions, count;
-  std::vector<double> sums, squares;  // f(A) + f(B) and f(A)^2 + f(B)^2 of each row
+  std::vector<double> sums, squares;  // f(A) + f(B) and f(A)^2 + f(B)^2 of each row, for its points A and B
   // Terms of the sums for the first-order and the total index, before the division by the variance. Element j d + i belongs to
   // row j and variable i of d variables.
   std::vector<double> first_order, total;

@@ -115,7 +115,7 @@ template <class Variant>
   return law;
 }
 
-/// Throws InvalidInput if a number of the law is below another number of the law that is its lower bound.
+/// Throws InvalidInput if a parameter of the law is below the parameter that Field::not_below names as its lower bound.
 template <class... Laws>
 void check_bounds(std::variant<Laws...> law, const SectionReader& in) {
   std::visit(

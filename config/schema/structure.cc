@@ -47,7 +47,7 @@ std::vector<Key> further_keys() {
   return {};
 }
 
-/// Returns the key `kind`, and the keys of all kinds of structure. A key that only some kinds have lists these kinds.
+/// Returns the key `kind`, and the keys of all kinds of structure. Key::only_for lists the kinds that have a key; empty: all.
 std::vector<Key> structure_keys() {
   std::vector<Key> keys;
   const auto add = [&](Key key, std::string_view kind) {
