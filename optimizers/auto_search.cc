@@ -11,8 +11,9 @@
 namespace softland::internal {
 namespace {
 
-// Shares of the evaluations of an epoch, which is one cycle of sampling, local searches and refinement. `refining` is for the
-// user's starts; with a gradient method this share is spent twice: before and after the change to that method.
+// Shares of the evaluations of an epoch, which is one cycle of sampling, local searches and refinement. `refining` is for local
+// searches from the user's starts. It is spent again if a gradient method continues these searches. `sampling` is for points
+// spread over the box.
 constexpr double refining = 0.2;
 constexpr double sampling = 0.15;
 // Share of the remaining evaluations for local searches near the best point (hops), if the search has a gradient and continues
@@ -21,7 +22,7 @@ constexpr double hopping = 0.6;
 constexpr double first_heat = 0.4;
 constexpr double later_heat = 0.2;
 
-// Largest budget of one epoch; a further epoch with new starts promises more than longer local searches.
+// Largest budget of one epoch [evaluations]; a further epoch with new starts promises more than longer local searches.
 constexpr long longest_epoch = 5000;
 constexpr long epochs_with_gradient = 4, shortest_epoch = 600;
 constexpr std::size_t searches_at_once = 4;
@@ -33,15 +34,16 @@ constexpr long shortest_heat = 20;
 // Standard deviations of the distance between the best point and the random start of a local search near it (a hop), as
 // fractions of the box of the variables.
 constexpr std::array hop_sizes = {0.0005, 0.002, 0.008, 0.03};
-// Least number of variables from which on hops near the best point succeed more often than sampling the box of the variables.
+// Least number of variables from which on local searches near the best point (hops) succeed more often than sampling the box of
+// the variables.
 constexpr std::size_t fewest_hopping = 16;
 // Iterations of one hop (a local search near the best point), added to one iteration per variable: enough for a quasi-Newton
 // model of the curvature.
 constexpr long iterations_of_hop = 8;
 constexpr long evaluations_of_iteration = 1 + evaluations_of_gradient;
 
-// Largest separation of two start points, first step of a local search, and of a refining search, as fractions of the box of
-// the variables.
+// Largest required distance between start points, first step of a local search, and first step of a search that refines a
+// point, as fractions of the box of the variables.
 constexpr double largest_separation = 0.15;
 constexpr double first_step = 0.25;
 constexpr double polishing_step = 0.02;
@@ -146,8 +148,8 @@ void hop(EvaluationRecord& record, const Method& method, long budget) {
   }
 }
 
-/// Searches by epochs, cycles of sampling, local searches and refinement by `polisher`. `finisher`, if not null, is the
-/// gradient method that continues the local searches after their first round.
+/// Searches in epochs, which are cycles of sampling, local searches by `methods`, and refinement of the best point by
+/// `polisher`. If `finisher` is not null, this gradient method continues the local searches after their first round.
 void search(EvaluationRecord& record, const std::array<const Method*, searches_at_once>& methods, const Method* finisher,
             const Method& polisher) {
   std::uint64_t points_sampled = 0;
@@ -166,7 +168,7 @@ void search(EvaluationRecord& record, const std::array<const Method*, searches_a
     const long budget = std::min(record.remaining(), longest_epoch);
     std::vector<Point> starts = promising_points(record.known(), explored);
     starts.resize(std::min(starts.size(), starts_refined));
-    std::vector<LocalSearch> refined;  // searches from the starts; empty when stopped before the first evaluation
+    std::vector<LocalSearch> refined;  // local searches from the user's starts; empty when stopped before the first evaluation
     const auto go_on = [&] {
       if (refined.empty()) return;
       advance(record, refined, std::max(share_of(budget, refining, refined.size()), shortest_refinement));

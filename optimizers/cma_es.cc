@@ -25,7 +25,7 @@ using Eigen::VectorXd;
 // noise of the objective would hide the differences.
 constexpr double smallest_spread = 1e-7;
 
-/// Folds the real line onto [0, 1], by mirroring at both ends.
+/// Moves a coordinate of a sampled point into [0, 1] by mirroring at the bounds, as often as needed.
 double mirror(double u) { return std::abs(std::remainder(u, 2.0)); }
 
 /// Returns the weights by which the better half of lambda sampled points (children) enter the new mean, for the best point
@@ -84,8 +84,8 @@ class Distribution {
   [[nodiscard]] double spread() const { return sigma_ * lengths_.maxCoeff(); }
   void shrink(double factor) { sigma_ *= factor; }
 
-  // Moves the mean to the weighted best sampled points (children) and adapts the distribution to their steps; children are
-  // sorted, the best first.
+  // Moves the mean to the weighted mean of the best sampled points (children), and adapts the distribution to the steps from
+  // the old mean to these points. The children are sorted, the best first.
   void learn(const std::vector<Child>& children, long generation) {
     const Strategy& s = strategy_;
     VectorXd move = VectorXd::Zero(mean_.size());
@@ -105,7 +105,7 @@ class Distribution {
       lower.rankUpdate(children[static_cast<std::size_t>(j)].step, s.c_mu * s.weights[j]);
     const SymmetricEigen eigen = symmetric_eigen(covariance_);
     axes_ = eigen.vectors;
-    // Smaller eigenvalues of the covariance than this limit are rounding errors of the largest eigenvalue.
+    // Raise eigenvalues of the covariance to this limit: smaller ones are rounding errors of the largest eigenvalue.
     const double smallest = std::numeric_limits<double>::epsilon() * eigen.values.maxCoeff();
     lengths_ = eigen.values.cwiseMax(smallest).cwiseSqrt();
 

@@ -52,9 +52,11 @@ const Radau& radau() {
   return rule;
 }
 
-// The control at a point of the mesh is a weighted sum of the program's control variables; this is one term of the sum.
+// One term of a control at a point of the mesh: a control is a weighted sum of control variables of the nonlinear program.
 struct ControlWeight {
-  Index column;  // column of the control variables: one per interval between knots, or per knot
+  // Index of the column of control variables: one column per interval between the times at which controls change, or one per
+  // such time if their slew is bounded.
+  Index column;
   double weight;
 };
 
@@ -463,7 +465,7 @@ ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& gu
   options->SetIntegerValue("print_level", 0);
   options->SetStringValue("sb", "yes");
   options->SetNumericValue("tol", problem.tolerance);
-  // Tighter than Ipopt's default, which would leave controls visibly inside their bounds.
+  // This tolerance of complementarity is tighter than Ipopt's default, which would leave controls visibly inside their bounds.
   options->SetNumericValue("compl_inf_tol", problem.tolerance);
   options->SetIntegerValue("max_iter", static_cast<int>(problem.max_iterations));
   options->SetNumericValue("bound_relax_factor", 0.0);

@@ -41,7 +41,7 @@ Point inside(std::span<const double> point) {
   return moved;
 }
 
-// Number of requests in succession for points that were evaluated before, after which a search is ended as going in circles.
+// Number of successive requests for points that were evaluated before, after which a search is ended, since it repeats itself.
 // The number of evaluated points is added to this limit, since a continued search first repeats its own evaluations.
 constexpr long circles_allowed = 1000;
 

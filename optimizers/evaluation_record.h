@@ -25,7 +25,8 @@ namespace softland::internal {
 /// A point of the search: the variables whose bounds differ, each scaled to [0, 1].
 using Point = std::vector<double>;
 
-/// Exception by which a BudgetedObjective ends the run of a library. Each backend translates Cut as its library requires.
+/// Exception by which a BudgetedObjective ends the run of an optimizer library. Each backend translates Cut as its library
+/// requires.
 struct Cut {};
 
 /// Value of the objective at a point, as given to an optimizer library. At an infeasible point it is a finite penalty above all
@@ -137,8 +138,8 @@ class EvaluationRecord {
   [[nodiscard]] bool over() const { return remaining() <= 0 || target_reached_ || outside_ != Termination::not_run; }
   /// Returns all evaluations of the completed rounds, in order.
   [[nodiscard]] const std::vector<Known>& known() const { return known_; }
-  /// Returns true when a task of the current round should end early for a reason other than the evaluation budget. The function
-  /// is cheap enough for waiting loops.
+  /// Returns true when a task of the current round has to end early: another thread or the time budget stops the minimisation,
+  /// or an earlier task has reached the target. The function is cheap enough for waiting loops.
   [[nodiscard]] bool cut_off(std::size_t task);
 
   /// Returns the result of the minimisation. `message` is that of the last local search, `converged` is true when this search
@@ -164,10 +165,10 @@ class EvaluationRecord {
   std::chrono::steady_clock::time_point begin_;
   std::vector<std::size_t> free_;  ///< indices of the variables whose bounds differ
   std::vector<Point> starts_;
-  /// The user's starts to the last digit, by scaled point, since scaling a point back to the user's units would round.
+  /// The user's starts with all their digits, by scaled point: scaling a point back to the user's units would round.
   std::unordered_map<Point, std::vector<double>, PointHash> exact_;
 
-  // Only the code between rounds changes the following members.
+  // The following members change only between rounds, so that the tasks of a round read them without a lock.
   std::vector<Known> known_;
   Memory memory_;
   Numbers values_, gradients_;

@@ -28,8 +28,8 @@ constexpr double step_tolerance_inside_mlsl = 1e-4;
 struct Callback {
   BudgetedObjective& budgeted;
   bool with_conditions;  ///< true when the method uses the conditions of the problem
-  /// For DIRECT: place at which the problem is evaluated where NLopt's variable is 0.5, by variable; both scales are [0, 1] and
-  /// piecewise linear. Empty: NLopt's variables are used unchanged.
+  /// Value of each variable of the problem at which NLopt's variable is 0.5, for DIRECT. Both variables are scaled to [0, 1],
+  /// and each is a piecewise linear function of the other. Empty: NLopt's variables are those of the problem.
   std::vector<double> bent_middle;
 
   [[nodiscard]] Point to_point(const std::vector<double>& x) const {
@@ -58,7 +58,8 @@ double call(const std::vector<double>& x, std::vector<double>& gradient, void* d
   }
 }
 
-// Evaluates the conditions g_i <= 0 for NLopt's methods with a gradient. The nonlinear scale of DIRECT does not apply here.
+// Evaluates the conditions g_i <= 0 for NLopt's methods with a gradient. DIRECT is not among these methods, so that its
+// nonlinear scale of the variables is not applied.
 void call_conditions(unsigned count, double* values, unsigned dimension, const double* x, double* gradient, void* data) {
   BudgetedObjective& budgeted = static_cast<Callback*>(data)->budgeted;
   const std::span<const double> point(x, dimension);

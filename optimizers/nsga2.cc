@@ -121,9 +121,9 @@ const Member& tournament(const std::vector<Member>& members, Draws& draws) {
   return b.crowding > a.crowding ? b : a;
 }
 
-/// Returns a random distance of the children from the middle of their parents, from a uniform `u` and the distribution index.
-/// `room` is the distance from the middle to the bound on the side of the child. Distances are in halves of the
-/// parents' distance.
+/// Returns the random distance of two children from the middle of their parents in one variable. `u` is a uniform random
+/// number, and `index` the distribution index. `room` is the distance from the middle to the bound on the child's side. The
+/// unit of both distances is half the distance of the parents.
 double spread_factor(double u, double room, double index) {
   const double all = 2 - std::pow(room, -(index + 1));
   const double part = u * all;
@@ -167,7 +167,7 @@ class Evaluations {
   [[nodiscard]] bool over() const { return ended_ != Termination::not_run; }
   [[nodiscard]] Termination ended() const { return ended_; }
 
-  /// Returns the population at these points, without the points for which evaluations or time ran out.
+  /// Evaluates the points and returns them as members of a population, without those for which evaluations or time ran out.
   std::vector<Member> members_at(const std::vector<Point>& points) {
     std::vector<std::vector<double>> fresh;
     std::set<std::vector<double>> seen;

@@ -26,8 +26,8 @@ double time_from_rest(const std::function<double(double)>& fallen, double mass, 
 
 std::optional<double> switching_position(const Potential& driven, const Potential& coasting, double from, double contact) {
   const double at_start = driven(from), at_contact = coasting(contact);
-  // Kinetic energy left at the contact if the drive jumps from its pulling to its coasting value at x; negative if the switch
-  // does not reach the contact.
+  // Kinetic energy at the contact if the drive jumps from its pulling to its coasting value at the position x; negative if the
+  // switch does not reach the contact.
   const auto left = [&](double x) { return at_start - driven(x) - (at_contact - coasting(x)); };
   if (!(left(from) < 0) || !(left(contact) > 0)) return std::nullopt;
   double low = from, high = contact;

@@ -46,8 +46,8 @@ struct BangBang {
                                                 double contact);
 
 /// Computes the closing with zero speed at the contact of a switch that moves in its first mode alone, from rest under the
-/// drive values `before` (none: 0). The drives pull with the values `driven` up to the switching position x_s, and have the
-/// values `coasting` after it.
+/// drive values `before` (empty: 0). The drives pull with the values `driven` up to the switching position x_s, and have the
+/// values `coasting` after it. Returns nothing if no such closing exists.
 [[nodiscard]] std::optional<BangBang> bang_bang(const Switch& model, const std::vector<double>& driven,
                                                 const std::vector<double>& coasting, std::span<const double> before = {});
 

@@ -72,8 +72,8 @@ std::vector<std::vector<double>> BrakePulses::starts() const {
   return all;
 }
 
-// Returns the point of the search at which only the drive `braking` gives pulses: wait, level and duration of each of two, with
-// times in periods of the first mode. The other drives stay at 0 V.
+// Returns the point of the search at which only the drive `braking` gives its two pulses. The other drives stay at 0 V.
+// `pulse_train` has wait, level [V] and duration of each pulse, with times in periods of the first mode.
 std::vector<double> BrakePulses::start(const Brake& braking, const std::array<double, 6>& pulse_train) const {
   std::vector<double> x;
   for (const Brake& b : brakes_) {

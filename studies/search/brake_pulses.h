@@ -23,8 +23,8 @@ using Corners = std::vector<std::pair<double, double>>;
 class BrakePulses {
  public:
   /// Keeps a reference to `given`. `holds` are the commanded voltages before the command to open, in the order of
-  /// Switch::drives() [V]; error messages begin with the command `asker`. Throws InvalidRequest if the scene lacks the
-  /// actuator, InvalidInput if no drive of the actuator has limits.
+  /// Switch::drives() [V]. Error messages begin with `asker`, the name of the user's command. Throws InvalidRequest if the
+  /// scene lacks the actuator, and InvalidInput if the voltage source of no drive of the actuator has limits.
   BrakePulses(const PreparedScene& given, Actuator actuator, std::vector<double> holds, std::string_view asker);
 
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }

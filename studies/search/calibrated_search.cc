@@ -14,19 +14,20 @@ namespace softland {
 namespace {
 
 constexpr std::uint64_t measured_devices = 128;  // number of devices in a search with a per-device calibration
-// Relative errors of the measured dynamic pull-in voltage Vdp and period of each device: of Vdp alone, and of both if the
-// closing time cannot be measured.
+// Relative errors of the measured dynamic pull-in voltage Vdp and period of each device: the usual error (`coarse_error`), and
+// the error that a switch needs whose closing is too quick to be timed (`fine_error`).
 constexpr double coarse_error = 0.01, fine_error = 0.002;
 constexpr double least_times_of_error = 20;
 // Relative errors of the measured dynamic pull-in voltage Vdp, for each of which the performance of the waveforms is computed.
 constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};
-constexpr double most_rows = 4;  // largest number of rows of results with a calibration, for reports of progress
+constexpr double most_rows = 4;  // largest number of rows with a calibration in the table of results, for reports of progress
 // Number of fresh devices (new to the search) that show the effect of each error of the measured dynamic pull-in voltage Vdp.
 constexpr std::size_t devices_by_error = 256;
-// Share of bounce-free devices under the best uncalibrated waveform from which on the searches with a calibration maximise this
-// share.
+// The searches with a calibration maximise the bounce-free share of devices if the best uncalibrated waveform reaches at least
+// this share. Otherwise they minimise the tail of the cost.
 constexpr double ranked_by_share = 0.25;
-// Number of the random sample of devices on which searches with a calibration try waveforms; robust_search.cc uses others.
+// Number of the random sample of devices on which searches with a calibration try waveforms. The samples in robust_search.cc
+// have other numbers, so that their devices differ.
 constexpr std::uint64_t which_measured = 2;
 
 }  // namespace
@@ -54,8 +55,8 @@ bool DevicesRow::is_worth_measuring(const DevicesRow& uncalibrated) const {
   return speed(*this) < worth_choosing * speed(uncalibrated);
 }
 
-// Measures the fresh devices (new to the search) in advance, in parallel with other work: the final evaluation with a
-// per-device calibration needs their pull-in voltages and closing times.
+// Computes pull-in voltages and closing times of the fresh devices (new to the search), in parallel with other work: the final
+// evaluation with a per-device calibration needs these quantities.
 void RobustSearch::measure_ahead() {
   try {
     meter_.emplace(first().given, MeasuredQuantities{.closing_time = true});
@@ -97,8 +98,8 @@ CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const
   return all;
 }
 
-// Searches a waveform for each of the calibrations, in parallel. An element of the result is empty if its search found no
-// waveform.
+// Searches a waveform for each of the two `calibrations`, in parallel. An element of the result is empty if the search with
+// this calibration found no waveform.
 std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
                                                              const std::array<Calibration, 2>& calibrations) {
   const auto family = std::ranges::find(names_, winner.family);
@@ -113,7 +114,7 @@ std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& w
             first(), aims_.tail,
             own_devices(first(), known[i], measured_devices, options_.seed, which_measured, options_.jobs, progress_));
         RaceOptions own = race_options();
-        own.memory = nullptr;  // no memory of evaluations: its keys would not distinguish calibrations
+        own.memory = nullptr;  // no memory of evaluations: its keys do not contain the calibration
         own.progress = [&, i](double part) {
           parts[i] = part;
           progress_.tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
@@ -134,7 +135,7 @@ std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& w
 }
 
 RaceResult RobustSearch::searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options) {
-  constexpr long shorter = 3;  // a search with calibration gets a third of the closings of one without
+  constexpr long shorter = 3;  // a search with a calibration simulates a third of the closings of a search without one
   RobustAim aim = tail_aim_;
   aim.free = free_;
   for (const Condition& one : aims.tail.conditions) {
@@ -147,7 +148,8 @@ RaceResult RobustSearch::searched_at_pace(const RobustCost& cost, const RaceAims
   return all;
 }
 
-// True if impacts under the waveforms are harder than under the plain step, on the devices of `cost`.
+// True if the 95th percentile of impact velocity, rebound or peak force under the waveforms is above that under the plain step,
+// on the devices of `cost`.
 bool RobustSearch::is_harder_than_step(const RobustCost& cost, const DriveWaveforms& waveforms) const {
   const std::vector<DeviceOutcome> outcomes = cost.close(first().drives(waveforms), 0, cost.devices(), 1);
   return !hold(at_most_step_, outcomes);
@@ -206,8 +208,9 @@ RobustCost RobustSearch::verdict_devices(const MeasuredUnits& known) {
   return {first(), aims_.tail, known_as(calibrated(known.calibration()), known, options_.seed)};
 }
 
-// Returns the fresh devices (new to the search) with their exact measured quantities, which are computed at the first call and
-// used for all calibrations.
+// Returns the fresh devices (new to the search) with the quantities that a calibration measures, without measurement errors.
+// The quantities are computed at the first call for a calibration by closing time, and at the first call for any other
+// calibration.
 const CalibratedEnsemble& RobustSearch::calibrated(const Calibration& knowledge) {
   std::optional<CalibratedEnsemble>& all = knowledge.time_error ? calibrated_by_time_ : calibrated_by_pull_in_;
   if (!all)

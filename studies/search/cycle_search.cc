@@ -93,7 +93,8 @@ class PairSearch {
   }
   [[nodiscard]] double cost_of_cycles(const CycleWaveforms& waveforms) const { return cost(waveforms); }
 
-  /// Minimises the cost `by` over the waveform parameters with index `first` and above; all other parameters stay as in `from`.
+  /// Minimises the cost `by`, a member function, over the waveform parameters with index `first` and above; all other
+  /// parameters stay as in `from`.
   [[nodiscard]] OptimizerResult improve(const char* what, Price by, std::size_t first, const std::vector<double>& from,
                                         std::vector<std::vector<double>> starts) {
     const std::vector<Variable> all = variables();
@@ -152,7 +153,8 @@ SceneFile scene_of_cycle(const PreparedScene& given, const CycleWaveforms& wavef
   return file;
 }
 
-// Reads the closing and opening waveforms from a scene of one cycle, so that they are simulated as rounded in its text.
+// Reads the closing and opening waveforms back from a scene of one cycle, whose text rounds the numbers, so that the simulated
+// waveforms are those of the text.
 CycleWaveforms read_again(const SceneFile& file, const PreparedScene& given, const CycleTimes& times) {
   const PreparedScene read = read_back(file, "best.toml", given);
   CycleWaveforms waveforms{.name = "found", .closing = {}, .opening = {}};

@@ -10,7 +10,8 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t remembered = 14;  // number of earlier candidate waveforms with whose median a candidate is compared
+// Number of latest candidate waveforms whose median cost is the limit for the next candidate.
+constexpr std::size_t remembered = 14;
 constexpr std::size_t fewest_remembered = 5;
 
 }  // namespace
@@ -56,7 +57,7 @@ ChainEnd search_chain(const StagedCost& cost, const Chain& chain, SearchBudget& 
     if (tried.cost < best.cost) best.x = x, best.cost = tried.cost;
     budget.took(tried.closings);
     if (budget.over() || best.closings >= chain.closings) enough = true;
-    told(x, tried.cost);  // call `told` after the budget is updated: `told` may throw Interrupted
+    told(x, tried.cost);  // call `told` after the budget has counted the closings, since `told` may throw Interrupted
     if (budget.interrupted()) enough = true;
     return tried.cost;
   };

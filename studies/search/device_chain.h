@@ -23,8 +23,8 @@ namespace softland {
 /// devices.
 class StagedCost {
  public:
-  /// Keeps references to `setting`, `cost` and `aim`. `memory`, which stores costs between runs, may be null; `seed` identifies
-  /// the set of devices and the aim in the memory.
+  /// Keeps references to `setting`, `cost` and `aim` (measure of risk and conditions). `memory`, which stores costs between
+  /// runs, may be null. In its keys, `seed` stands for the set of devices and for the aim.
   StagedCost(const SearchSetting& setting, const RobustCost& cost, const RobustAim& aim, EvaluationMemory* memory,
              std::uint64_t seed)
       : setting_(setting), cost_(cost), aim_(aim), memory_(memory), seed_(seed) {}

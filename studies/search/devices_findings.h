@@ -16,8 +16,8 @@
 
 namespace softland {
 
-// Names of rows in the table of results. A row shows how one waveform performs on the devices: the plain step, the waveform of
-// the nominal design, that for varied devices, and that with the electrode's step at t = 0.
+// Names of rows in the table of results. A row shows how one waveform performs on varied devices. The waveforms are the plain
+// step, those searched for the nominal design and for varied devices, and the best one with the electrode's step at t = 0.
 inline constexpr const char *plain_step_row = "plain step", *for_the_drawing = "for the drawing",
                             *for_the_devices = "for the devices", *undelayed_row = "electrode at t = 0";
 /// Name of the choice whose waveform is in best.toml, among the waveforms offered to the user.
@@ -33,15 +33,15 @@ struct FrontPoint {
 };
 
 /// Performance on fresh devices (new to the search) if the dynamic pull-in voltage Vdp of each device is measured with an
-/// error. Each figure is the better of two: under the waveforms searched with a per-device calibration, and under the best
-/// uncalibrated waveform.
+/// error. Each figure is the better of two: that under the waveforms searched with a per-device calibration, and that under the
+/// best uncalibrated waveform.
 struct CalibrationError {
   double error = 0;  ///< relative standard deviation of the error of the measured pull-in voltage
   /// Share of bounce-free devices; 95th percentile of the impact velocity [m/s].
   double bounce_free = Metrics::unset, impact_speed = Metrics::unset;
 };
 
-/// A candidate waveform among which the search over devices chooses the best one, as shown in reports.
+/// One of the candidate waveforms among which the search over devices chooses the best one, as shown in reports.
 struct RaceEntry {
   /// Measure of risk that the search minimised, and waveform family: "cvar:0.9", "knots:6". The measure is "drawing" for a
   /// candidate of the search on the nominal device.
@@ -77,7 +77,7 @@ struct DevicesFindings {
   /// A waveform that is offered to the user; row() returns the name of its row of results.
   struct Choice {
     std::string name, file, waveform;
-    /// 95th percentile of the time until a steady contact force, as a multiple of the plain step's.
+    /// 95th percentile over the devices of the time until a steady contact force, as a multiple of that under the plain step.
     double tau = Metrics::unset;
     [[nodiscard]] std::string row() const { return name == default_choice ? for_the_devices : name; }
   };
@@ -86,12 +86,13 @@ struct DevicesFindings {
     std::vector<std::string> drives;  ///< names of the drives; the drive that moves the switch to its contact comes first
     /// Share of the devices with a stable path to the contact within the limits of the voltage sources.
     double share = Metrics::unset;
-    double reaches = Metrics::unset;  ///< voltage of the first drive at which the nominal design makes contact [V]
-    double limit = Metrics::unset;    ///< limit of the first drive's voltage towards the contact [V]
-    /// Width of the range of the contact point's positions in which the central 90 % of the devices make contact without
-    /// vibration: StableApproach::touch_places() [m].
+    double reaches = Metrics::unset;  ///< voltage of the drive drives[0] at which the nominal design makes contact [V]
+    double limit = Metrics::unset;    ///< voltage limit of the drive drives[0] in the direction of the contact [V]
+    /// Width of the range of the contact point's positions at which the central 90 % of the devices make contact in a slow
+    /// approach: StableApproach::touch_places() [m].
     double touch_places = Metrics::unset;
-    double rise = Metrics::unset;  ///< least duration of the slow approach before the first device makes contact [s]
+    /// Shortest time in which an input shaper brings the switch near its contact without vibration [s].
+    double rise = Metrics::unset;
   };
   /// Contact gaps of devices over time, under the plain step and under the waveform of best.toml, at equal time steps.
   struct Courses {
@@ -110,20 +111,20 @@ struct DevicesFindings {
       /// If the plain step is best: figures of merit in which the best candidate waveform is worse than the plain step.
       worse_in;
   std::vector<Row> rows;
-  /// Waveforms offered to the user, that with the earliest steady contact first; empty if the plain step is best.
+  /// Waveforms offered to the user, the waveform with the earliest steady contact first; empty if the plain step is best.
   std::vector<Choice> choices;
   std::optional<StablePath> stable_path;
   /// True if the 95th percentile of the rebound height under the waveform of best.toml is below a significant rebound.
   std::optional<bool> goal_met;
   /// Excess of the 95th percentile of the rebound height over a significant rebound [m]; 0: none.
   double missed_by = Metrics::unset;
-  double step_delay = Metrics::unset;  ///< time of the electrode's plain step after t = 0, if the search may delay it [s]
+  double step_delay = Metrics::unset;  ///< instant of the electrode's plain step, if the search chooses this instant [s]
   std::optional<Courses> courses;      ///< contact gaps of devices over time; none if the plain step is best
   std::vector<FrontPoint> front;       ///< the Pareto front of candidate waveforms, sorted by time of first contact
   /// Performance by error of the measured dynamic pull-in voltage, the least error first; empty if devices are not calibrated.
   std::vector<CalibrationError> by_error;
   HoldWindows windows;  ///< range of the hold voltage in which devices stay closed, by electrode
-  /// Candidates for the best waveform, the best first, with their results on the devices on which it is chosen.
+  /// Candidates for the best waveform, the best first, with their results on the devices that serve to compare candidates.
   std::vector<RaceEntry> race;
   /// Conditions of the search on figures, and the share of devices that fulfil them under the best waveform.
   std::vector<FulfilledCondition> conditions;

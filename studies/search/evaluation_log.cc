@@ -10,8 +10,8 @@ namespace softland {
 namespace {
 
 constexpr std::size_t most_candidates = 8;  // largest number of candidate waveforms that are verified
-// Numbers of evaluations that EvaluationLog::sampled_by_rank() returns: of the best, of those evenly spaced by rank, and of the
-// best of every problem.
+// Numbers of evaluations that EvaluationLog::sampled_by_rank() returns: the best ones, others that are evenly spaced by rank of
+// their cost, and the best ones of every waveform family.
 constexpr std::size_t kept_best = 100, kept_of_ladder = 150, kept_of_problem = 15;
 
 }  // namespace

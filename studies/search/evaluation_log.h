@@ -25,8 +25,8 @@ inline constexpr double distinct = 1.01;
 /// Collects the evaluations of a search. Several threads may call the log; callbacks are called one at a time.
 class EvaluationLog {
  public:
-  /// A function that returns the scene with the waveforms of an improving evaluation; none if the improvement is not to be
-  /// reported.
+  /// A function that returns the scene with the waveforms of an evaluation that is the best so far; none if this improvement is
+  /// not to be reported.
   using SceneOf = std::function<std::optional<SceneFile>(const Evaluation&)>;
   /// Keeps references to `options` and `budget`, whose number of evaluations is reported. `step_cost` is the cost of the plain
   /// step.
@@ -34,8 +34,8 @@ class EvaluationLog {
 
   /// Adds an evaluation to the log. Call note() after the budget has counted the evaluation.
   void note(const Evaluation& evaluation);
-  /// Reports `given`, a user's starting waveform, as an improvement if it is the best so far. The log does not store the
-  /// waveform.
+  /// Reports `given`, a waveform from the user, as an improvement if it is the best so far. `given` does not become one of the
+  /// evaluations of the search.
   void begin_with(const Evaluation& given, const std::optional<SceneFile>& scene);
   /// Reports the current number of evaluations by OptimizeOptions::on_progress, when no evaluation was added to the log.
   void tell();
@@ -44,8 +44,8 @@ class EvaluationLog {
   [[nodiscard]] const std::map<long, Evaluation>& evaluations() const { return evaluations_; }
   /// Returns the evaluations of the waveform family with the number `problem`, by their index.
   [[nodiscard]] std::map<long, Evaluation> evaluations(std::size_t problem) const;
-  /// Returns some of the evaluations that touch, the best first: the 100 best, 150 evenly spaced by rank, and the best 15 of each
-  /// of the first `problems` values of Evaluation::problem.
+  /// Returns some of the evaluations under which the switch makes contact, the best first: the 100 of the lowest cost, 150
+  /// evenly spaced by rank, and the best 15 of each of the first `problems` waveform families.
   [[nodiscard]] std::vector<Evaluation> sampled_by_rank(std::size_t problems) const;
   /// Returns one more than the largest index of the evaluations; 0 without evaluations.
   [[nodiscard]] long next_index() const { return evaluations_.empty() ? 0 : evaluations_.rbegin()->first + 1; }

@@ -22,8 +22,9 @@ struct EvaluationKey {
   std::size_t family = 0;     ///< number of the waveform family among those that share the memory
   std::vector<double> x;      ///< searched waveform parameters of the candidate
   std::uint64_t devices = 0;  ///< number of varied devices in the evaluation; 0: the nominal device alone
-  std::uint64_t seed = 0;     ///< number that stands for the random devices and the aim of the search
-  /// A candidate whose cost on the first devices exceeds this value is not simulated on the others.
+  /// Number that stands for the random devices, and for the measure of risk and conditions of the search.
+  std::uint64_t seed = 0;
+  /// A candidate whose cost on the first devices exceeds this value is not simulated on the other devices.
   double hopeless = std::numeric_limits<double>::infinity();
 };
 

@@ -13,7 +13,7 @@ namespace softland {
 namespace {
 
 constexpr std::size_t figures =
-    7;  // number of columns after the parameters: cost, guide cost, bounce-free, devices, cost limit, seed, closings
+    7;  // number of columns after the waveform parameters: cost, guide cost, bounce-free, devices, cost limit, seed, closings
 
 std::vector<StoredColumn> columns_for(const std::vector<std::string>& variables) {
   std::vector<StoredColumn> columns;
@@ -26,8 +26,8 @@ std::vector<StoredColumn> columns_for(const std::vector<std::string>& variables)
   return columns;
 }
 
-// Returns the key under which the database file stores an evaluation: evaluations with equal keys have equal results. `row` has
-// the columns of all waveform families, as in the keys of files from earlier versions.
+// Returns the key of an evaluation in the database file. Evaluations with equal keys have equal results. `row` has a value for
+// every parameter of every waveform family, as in the keys of files from earlier versions.
 ContentKey content_of(const EvaluationKey& key, const std::vector<double>& row) {
   std::string text = fmt::format("{} {} {:016x}", key.devices, key.seed, std::bit_cast<std::uint64_t>(key.hopeless));
   for (const double x : row) text += fmt::format(" {:016x}", std::bit_cast<std::uint64_t>(x));

@@ -22,8 +22,8 @@ inline constexpr const char* evaluations_file = "evaluations.sqlite";
 /// larger or smaller budget than the one before takes over the rows of the earlier search from the same file.
 class EvaluationStore : public EvaluationMemory {
  public:
-  /// `columns` are the parameters of all waveform families. `points` is the largest number of evaluations that the search
-  /// `plan` makes; further evaluations are not stored. Throws the exceptions of the constructor of StudyStore.
+  /// `plan` is the stored request of the search, `columns` are the parameters of all its waveform families. The search makes at
+  /// most `points` evaluations; further evaluations are not stored. Throws the exceptions of the constructor of StudyStore.
   EvaluationStore(const std::filesystem::path& file, const nlohmann::json& plan, std::int64_t points, std::uint64_t seed,
                   FamilyColumns columns, const StoredOrigin& origin);
 

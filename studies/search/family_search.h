@@ -43,8 +43,8 @@ class FamilySearch {
   [[nodiscard]] PreparedScene prepared(const Evaluation& e) const { return setting_.prepared(waveforms(e)); }
   /// Returns the waveform parameters of an evaluation, by drive.name.
   [[nodiscard]] std::map<std::string, double> named(const Evaluation& e) const;
-  /// Returns the most reliable of the evaluations with a target cost below `own`: see GuidedSearch::surest_below(). `others`
-  /// are evaluations that must not be returned, also of other waveform families.
+  /// Returns, among the evaluations with a target cost below `own`, the one that closes without a bounce most reliably: see
+  /// GuidedSearch::surest_below(). The evaluations `others`, also of other waveform families, are not returned.
   [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<Evaluation>& others) const;
 
  private:

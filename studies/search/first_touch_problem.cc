@@ -89,7 +89,8 @@ void FirstTouchProblem::add_free(const PreparedScene& prepared, const std::strin
     pull = up ? bound.upper : bound.lower;
     release = up ? bound.lower : bound.upper;
   } else {
-    // Count voltages from the voltage without pull (neutral voltage); with a slew limit, from 0 V.
+    // Count the voltages of an electrode from its voltage without pull (neutral voltage). With a slew limit the control is the
+    // voltage itself, which counts from 0 V.
     const double neutral = ramps_ ? 0 : model_.neutral_voltage(drive);
     f.sign = std::abs(low - neutral) > std::abs(high - neutral) ? -1 : 1;
     const double most = f.sign > 0 ? std::min(high, peak) - neutral : neutral - std::max(low, -peak);
@@ -123,8 +124,8 @@ std::vector<double> FirstTouchProblem::strengths(const VectorXd& c) const {
   return all;
 }
 
-// Returns the control of a drive at a voltage: its strength (or, with a slew limit, its voltage) over the largest one. The
-// control may be outside its bounds.
+// Returns the control of a drive at a voltage: the drive's strength over its largest strength, or, with a slew limit, its
+// voltage over its largest voltage. The result may be outside the bounds of the control.
 double FirstTouchProblem::control(const Free& f, double volts) const {
   const bool squared = !ramps_ && model_.drive_kind(f.drive) == DriveKind::electrode;
   return (squared ? model_.strength(f.drive, volts) : f.sign * volts) / f.largest;

@@ -92,7 +92,7 @@ class FirstTouchProblem final : public ControlledSystem {
   double gap_;
   Eigen::VectorXd omega_, per_q_, per_v_, per_acceleration_, tip_, tip_speed_, start_, pull_, release_;
   std::vector<double> held_;  ///< strengths of the drives that are not controlled; other entries have no meaning
-  std::vector<double> hold_;  ///< voltages of all drives after first contact [V]
+  std::vector<double> hold_;  ///< voltages of all drives that hold the closed switch [V]
   std::vector<Free> free_;
   std::vector<ControlBound> bounds_;
   bool ramps_ = false;

@@ -31,8 +31,8 @@ struct SearchCosts {
   std::optional<Apart> apart = {};
 };
 
-/// Functions for the gradients of the guide cost and the target cost, as Problem::gradient; may be null. If the search has
-/// conditions, the functions also return their gradients, as Conditions::gradients.
+/// Functions that compute the gradients of the guide cost and of the target cost, as Problem::gradient; may be null. If the
+/// search has conditions, the functions also return the gradients of the conditions, as Conditions::gradients.
 struct CostGradients {
   std::function<std::vector<double>(std::span<const double>)> guide, target;
   std::size_t conditions = 0;

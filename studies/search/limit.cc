@@ -25,18 +25,19 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int first_knots = 48;       // number of equal intervals of the controls at first; some are then divided
+constexpr int first_knots = 48;  // number of equal time intervals of the controls in the first solution; some are then divided
 constexpr double piece_angle = 0.75;  // phase angle by which the fastest mode turns in one interval of the time mesh [rad]
-// Permitted difference of the time of first contact between optimal control and simulation: relative, or, multiplied by the
-// impact velocity, in contact gaps.
+// Largest difference of the time of first contact at which optimal control and simulation agree: as a share of this time, or,
+// multiplied by the impact velocity, as a share of the contact gap.
 constexpr double agreement = 1e-4;
 constexpr double longest_swing = 3;  // longest time of a swing to the contact, in periods of the first mode
-// Excess of the simulated impact velocity over that of the optimal control at which the two still agree, as a share of the
+// Largest excess of the simulated impact velocity over that of the optimal control at which both agree, as a share of the
 // permitted impact velocity.
 constexpr double softness = 0.2;
-// Relative tolerance of the integrator for comparing catches, pulls after first contact that keep the switch closed.
+// Relative tolerance of the integrator in simulations that compare catches (pulls after first contact that keep the switch
+// closed).
 constexpr double catch_tolerance = 1e-6;
-constexpr int refinements = 3;  // halvings of the controls' time intervals that are permitted
+constexpr int refinements = 3;  // number of times that a time interval of the controls may be halved
 constexpr int most_meshes = 3;  // number of meshes of the optimal control problem, each with pieces half as long as before
 
 // Permitted distances of the modal coordinates at first contact from the closed equilibrium, in contact gaps. The optimal
@@ -79,8 +80,8 @@ class LeastTimeSearch {
     return from(std::move(*swing), longest_time());
   }
 
-  // Returns waveforms under which the modes come to rest at first contact ever more closely (rest_distances), on the initial
-  // intervals and mesh. After first contact the drives are as in `plain`.
+  // Returns waveforms under which the modes come to rest at first contact, one for each of rest_distances, each closer to rest
+  // than the one before. Time intervals and mesh are not refined. After first contact the drives are as in `plain`.
   std::vector<DriveWaveforms> ways_to_rest(const DriveWaveforms& plain) {
     std::vector<DriveWaveforms> all;
     std::optional<ControlledCourse> swing = first_touch_.swing(longest_time());
@@ -144,7 +145,8 @@ class LeastTimeSearch {
                 .knots = uniform_knots(first_knots),
                 .longest_piece = piece_angle / (fastest * course_.time),
                 .stop = options_.progress.stop};
-    // A beam stays at rest on the contact only if the drives end at the hold levels of its closed equilibrium.
+    // Require that the controls end at the values of the closed equilibrium `landing`: under others a beam would not stay at
+    // rest on its contact.
     for (Index k = 0; landing && first_touch_.ramps() && k < first_touch_.controls(); ++k)
       problem_.bounds[static_cast<std::size_t>(k)].after = landing->controls[k];
   }
@@ -169,8 +171,8 @@ class LeastTimeSearch {
     }
   }
 
-  // Requires that the modes end ever closer to rest (rest_distances), by one solution for each distance, since Ipopt does not
-  // find a motion that ends at rest at once. Calls `nearer` after each solution.
+  // Requires that the modes end ever closer to rest (rest_distances), by one solution for each distance: Ipopt does not find a
+  // motion that ends at rest in one step. Calls `nearer` after each solution.
   Status come_to_rest(const VectorXd& landed, const std::function<void()>& nearer = {}) {
     const Index n = first_touch_.states();
     for (Index r = 0; r < n; ++r) problem_.at_the_end.push_back({.row = VectorXd::Unit(n, r)});
@@ -214,8 +216,8 @@ class LeastTimeSearch {
       const double missed = apart * std::max(touch.velocity, result_.impact_velocity);
       bool near = apart <= agreement * result_.time || missed <= agreement * prepared_.scene.device.contact_gap();
       const bool as_soft = touch.velocity <= result_.impact_velocity + softness * options_.impact_velocity;
-      // A contact point that comes to rest near the contact plane may cross this plane earlier in the simulation than in the
-      // optimum.
+      // Accept an earlier and equally soft contact, too: a contact point that comes to rest near the contact plane may cross
+      // this plane earlier in the simulation than in the optimum.
       near = near || (options_.at_rest && as_soft && touch.time < result_.time);
       if ((near && as_soft) || (near && mesh == most_meshes)) return ended(Status::done, {});
       if (mesh == most_meshes) return ended(Status::numerical_failure, "a simulation of the waveform touches at another time");
@@ -334,7 +336,7 @@ class AfterTouch {
   FirstTouchProblem first_touch_;
   DriveWaveforms plain_;
   const LeastTime& path_;
-  LeastTime until_touch_;  // the least time `path_`, with waveforms that end at first contact
+  LeastTime until_touch_;  // the solution `path_`, with waveforms that end at first contact
 };
 
 bool goes_before(const LimitLanding& a, const std::optional<LimitLanding>& b) {

@@ -57,7 +57,9 @@ struct LeastTime {
   double peak = std::numeric_limits<double>::quiet_NaN();
   /// Time [s] and speed [m/s] of the first contact in a simulation of the closing under `waveforms`.
   double simulated_time = std::numeric_limits<double>::quiet_NaN(), simulated_velocity = simulated_time;
-  DriveWaveforms waveforms = {};  ///< waveforms of the controlled drives, which keep pulling after the first contact
+  /// Waveforms of the controlled drives. After first contact the drives pull fully for as long as the motion to the contact has
+  /// taken.
+  DriveWaveforms waveforms = {};
   ControlledCourse course = {};
 };
 
@@ -76,7 +78,7 @@ struct LeastTime {
 /// modes decay (the catch), and end on the hold levels.
 struct LimitLanding {
   LeastTime path = {};
-  /// Time from first contact to the pull that keeps the switch closed; the drives stay constant meanwhile [s].
+  /// Time from first contact to the pull that keeps the switch closed (the catch); the drives are constant in this time [s].
   double catch_delay = 0;
   double catch_time = 0;                 ///< time from first contact until the drives go to the hold levels [s]; 0: no catch
   PreparedScene scene;                   ///< scene with the waveforms of the closing, read back from its text
@@ -117,8 +119,8 @@ struct Limit {
 
 /// Computes the least closing time of any waveform. An interrupted run returns the results so far, or throws Interrupted before
 /// the first result. Throws the exceptions of least_time(), and InvalidInput if the plain step does not touch and no impact
-/// velocity is given, if the controlled electrode pulls away from the contact, and if a given waveform begins at another
-/// equilibrium.
+/// velocity is given, if the controlled electrode pulls away from the contact, and if a starting waveform begins at another
+/// equilibrium than the scene.
 [[nodiscard]] Limit limit(const SceneFile& file, const LimitOptions& options, const Progress& progress = {});
 
 }  // namespace softland

@@ -11,8 +11,8 @@
 namespace softland {
 namespace {
 
-// Limits the slew of searched drives without max_slew to their range per period of the highest mode. Returns true if a limit
-// changes.
+// Limits the slew of searched drives without max_slew: from one end of its range to the other, a drive then takes at least one
+// period of the highest mode. Returns true if a limit changes.
 bool make_gentle(SearchSetting& setting) {
   const double shortest_period = 2 * pi / setting.given.model.basis().angular_frequencies().maxCoeff();
   bool changes = false;

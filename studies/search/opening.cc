@@ -32,7 +32,7 @@ namespace {
 // Weight, in the cost of an opening, of its settling time in periods of the first mode. The residual vibration in contact gaps
 // has the weight 1.
 constexpr double time_share = 0.3;
-// Additional weight, in the cost, of the part of the vibration beyond the band about the open position.
+// Additional weight, in the cost of an opening, of the vibration's excess over the band about the open position.
 constexpr double outside_share = 5;
 constexpr double stays_closed = 10;         // cost of an opening waveform under which the switch stays closed
 constexpr double touched_again = 0.5;       // additional cost of every contact after the first opening
@@ -128,8 +128,8 @@ class ReleaseSearch {
     return all;
   }
 
-  // Returns the voltage that the source of drive k applies when the commanded voltage follows `points`. Before, the source has
-  // settled at the first voltage.
+  // Returns the voltage that the source of drive k applies when the commanded voltage follows `points`. Before t = 0 the source
+  // has settled at the first commanded voltage.
   [[nodiscard]] Signal applied(std::size_t k, Corners points) const {
     const DriverModel& source = given_.drives[k].source;
     const SourceErrors& errors = given_.drives[k].errors;
@@ -154,8 +154,8 @@ bool is_open_with_drives(const OpeningFigures& f, double band) {
   return f.status == Status::done && f.residual_vibration <= band;
 }
 
-// True if the opening `a` is better than `b`: it comes to stay near the open position earlier, or, if neither does, it leaves
-// less vibration.
+// True if the opening `a` is better than `b`: it settles earlier near the open position, or, if neither settles, it leaves less
+// vibration.
 bool better(const OpeningFigures& a, const OpeningFigures& b) {
   if (!std::isfinite(a.release_time)) return false;
   if (!std::isfinite(b.release_time)) return true;

@@ -27,23 +27,25 @@
 namespace softland {
 namespace {
 
-// For a target whose cost differs from that of bounce: number of candidates of each waveform family that are verified in
-// addition, those most likely to close without a bounce.
+// For a target with a cost other than that of bounce: number of further candidates of each waveform family that are verified,
+// those most likely to close without a bounce.
 constexpr std::size_t most_sure = 4;
-// Number of candidates of each waveform family that are verified in addition if the first ones were not confirmed.
+// Number of further candidates of each waveform family that are verified if no candidate was confirmed so far.
 constexpr std::size_t most_of_family = 4;
-// Least budget in evaluations for which starting waveforms that reach the contact at rest are computed: they take long.
+// Least budget of evaluations for which the search computes starting waveforms that reach the contact at rest, which takes
+// long.
 constexpr long fewest_for_landings = 1000;
-// Least time budget for which starting waveforms that reach the contact at rest are computed [s].
+// Least time budget for which the search computes starting waveforms that reach the contact at rest [s].
 constexpr double least_for_landings = 60;
 // Shares of a time budget at which three parts of a search end: the search, its continuation with slower voltage edges, and its
 // continuation by the worst cost over several numbers of modes. The rest is for verifying the best waveform.
 constexpr double end_of_search = 0.6, end_of_gentle = 0.75, end_of_worst = 0.85;
-// Impact velocity of starting waveforms that reach the contact at rest, as a share of that under the plain step.
+// Permitted impact velocity of starting waveforms that reach the contact nearly at rest, as a share of that under the plain
+// step.
 constexpr double soft_touch = 0.01;
-// Number of waveform families that are searched on by the worst cost over the scene's number of modes and more modes.
+// Number of waveform families whose search is continued by the worst cost over the scene's number of modes and more modes.
 constexpr std::size_t families_sifted = 2;
-// The search by the worst cost over several numbers of modes gets this part of the evaluations: one in 50.
+// The search by the worst cost over several numbers of modes gets the budget of evaluations divided by this number.
 constexpr long evaluations_of_the_worst = 50;
 constexpr long shortest_half = 100;  // fewest evaluations of each half of a divided budget
 // Share of the budget that all waveform families get in equal parts first; the best family then gets the rest.
@@ -157,8 +159,8 @@ class RunningSearch {
     std::vector<std::vector<double>> points = {};
   };
 
-  // Ranks the candidate waveforms of every waveform family by their cost in the setting `other`; the family with the least cost
-  // comes first.
+  // Ranks the candidate waveforms of every waveform family by their cost in `other`, a setting with several numbers of modes.
+  // The family with the least cost comes first.
   [[nodiscard]] std::vector<Promising> promising(const SearchSetting& other) const {
     std::vector<Promising> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
@@ -243,9 +245,10 @@ class RunningSearch {
   }
 
   // Runs a tournament of the waveform families. In the first round every family has an equal share of the budget, and in the
-  // second round the best family has the rest. By the cost of bounce, each family of the first round begins at the results of
-  // earlier families. By a target's own cost, only the best family does so in the second round, since otherwise all families
-  // would end in one minimum. Returns false if the search was interrupted or failed, or its time is over.
+  // second round the best family has the rest. By the cost of bounce, each family of the first round begins at the best points
+  // of the families before it. By a target's own cost, the families of the first round are independent, since otherwise all
+  // would end in one minimum, and the best family begins at the others' best points in the second round. Returns false if the
+  // search was interrupted or failed, or its time is over.
   bool run_families(long all_evaluations, double all_seconds, Costs costs) {
     const SearchBudget all(budget_, all_evaluations, all_seconds);
     const std::size_t count = families_.size();
@@ -383,8 +386,8 @@ class SearchBeyondModes {
     return sift(other, gentle);
   }
 
-  /// Searches on by the worst cost over the scene's number of modes and more modes, in the best waveform families of `search`.
-  /// Returns the number of evaluations.
+  /// Continues the search by the worst cost over the scene's number of modes and more modes, in the best waveform families of
+  /// `search`. Returns the number of evaluations.
   long sift(const RunningSearch& search, const std::vector<SearchSetting>& settings) {
     if (!verified_.belongs_to_modes() && !verified_.confirmed()) return evaluations_;
     const std::vector<RunningSearch::Promising> all = search.promising(by_the_worst_of_modes(settings.front()));

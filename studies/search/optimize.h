@@ -31,7 +31,8 @@ struct OptimizeProgress {
   /// Least cost in the search so far; NaN before a waveform was feasible.
   double best_cost = std::numeric_limits<double>::quiet_NaN();
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
-  /// Evaluations of the whole search, reduced for slow closings (OptimizeOptions::counts_work); 0: max_evaluations.
+  /// Number of evaluations that the whole search will make, reduced if closings are slow (OptimizeOptions::counts_work); 0:
+  /// max_evaluations.
   long planned = 0;
 };
 

@@ -21,16 +21,16 @@ constexpr std::array pace_rounds{
 // steady a little later.
 constexpr double of_the_time = 0.995;
 using Point = std::vector<double>;
-// First number of the random streams of these searches; the tournament of waveform families uses smaller numbers.
+// Number of the first random stream of the quasi-static searches; the tournament of waveform families uses smaller numbers.
 constexpr std::uint64_t first_of_paces = 1'000'000;
 
 bool has_pace(const RobustAim& aim) { return aim.free.until > 0 && std::isfinite(aim.free.until); }
 
-// Returns the largest time until a steady contact force at a pace [s].
+// Returns the permitted time until a steady contact force at a pace [s].
 double allowed(const Pace& pace, const RobustAim& aim) { return of_the_time * pace.of_step * aim.free.until; }
 
-// Returns the duration of a start waveform in units of FreeTime::until, about which the plain step bounces. The computing time
-// of a closing is proportional to this duration.
+// Returns the duration of a starting waveform over FreeTime::until, the time until the contact is steady under the plain step.
+// The computing time of a closing is proportional to this duration.
 double relative_duration(const SearchSetting& setting, const RobustAim& aim) {
   if (!has_pace(aim)) return 1;
   const DriveWaveforms first = setting.space.waveforms(setting.space.starts().front());

@@ -43,7 +43,8 @@ class BrokenLine {
       ramps_.push_back({begin + shift, end + shift, weights[k] * height});
     }
   }
-  /// Adds an edge of duration `length` to the signal: a ramp through an input shaper of three impulses.
+  /// Adds a smooth edge of duration `length`: a ramp in half this time, which an input shaper of three impulses spreads over
+  /// the whole.
   void add_edge(double begin, double length, double height) { add(begin, begin + length / 2, height, 3, length / 2); }
   void add_line(double begin, double end, double height) { ramps_.push_back({begin, end, height}); }
 
@@ -75,8 +76,8 @@ class BrokenLine {
   std::vector<Ramp> ramps_;
 };
 
-// Returns a piecewise linear waveform through `points` (time, voltage), clamped to the voltage limits of the source and slowed
-// to its slew limit.
+// Returns a piecewise linear waveform from the voltage `before` [V] through `points` (time, voltage), clamped to the voltage
+// limits of the source and slowed to its slew limit.
 Waveform slewed(const std::vector<std::pair<double, double>>& points, double before, const DriverLimits& limits) {
   Table table{.time = {0}, .voltage = {before}};
   double time = 0;
@@ -92,8 +93,8 @@ Waveform slewed(const std::vector<std::pair<double, double>>& points, double bef
   return table;
 }
 
-// Returns pairs: the square of the level of the holding electrode, and the voltage at which the other drive then brings the
-// nominal design to its contact. The levels are spaced evenly in their square, up to `most` [V].
+// Returns pairs: the square of the holding electrode's level [V^2], and the voltage at which the carrying drive then brings the
+// nominal design to its contact [V]. The levels are spaced evenly in their square, up to `most` [V].
 std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& prepared, const StableApproach& approach,
                                                          double most) {
   constexpr int levels = 6;
@@ -108,15 +109,15 @@ std::vector<std::pair<double, double>> touching_by_level(const PreparedScene& pr
   return all;
 }
 
-// Starts of a search: the first ramp (rise) ends below the voltage at which the nominal design makes contact, by slow_before if
-// the shaper has more than two impulses, else by fast_before. The second ramp (line) ends above this voltage. Unit: standard
-// deviation of this voltage over devices.
+// End voltages of the two ramps in starting points of a search, as distances from the voltage at which the nominal design makes
+// contact, in standard deviations of this voltage over devices. The first ramp (rise) ends below this voltage, by slow_before
+// if the input shaper has more than two impulses, else by fast_before. The second ramp (line) ends above it, by `beyond`.
 constexpr double slow_before = 3.5, fast_before = 1.5, beyond = 2;
-// Least standard deviation over devices of the voltage at which contact is made, as a share of this voltage.
+// Lower limit on the standard deviation, over devices, of the voltage at which contact is made, as a share of this voltage.
 constexpr double least_deviation = 0.005;
 constexpr double nearest_points = 1e-6;  // least distance in time of two corners of a waveform, in periods of the first mode
-// Wait between the end of the second ramp (line) and the rise of the holding electrode's voltage, if this rise is a plain step,
-// and if its waveform is searched; in periods of the first mode.
+// Wait in starting points between the end of the second ramp (line) and the rise of the holding electrode's voltage, in periods
+// of the first mode. It is step_after_line if this rise is a plain step, and holder_after_line if its waveform is searched.
 constexpr double step_after_line = 1.2, holder_after_line = 0.8;
 constexpr double settle = 0.5;  // duration of an edge to the hold level, in periods of the first mode
 // Levels of the holding electrode before contact, as shares of its hold level: least level at contact in a start, and upper
@@ -124,8 +125,9 @@ constexpr double settle = 0.5;  // duration of an edge to the hold level, in per
 constexpr double least_contact_level = 0.16, most_low = 0.5;
 // Levels of the holding electrode before contact in further starts, as shares of its hold level.
 constexpr std::array lower_levels{0.03, 0.12};
-// Return to its hold level of the drive that carries the switch to its contact: duration if the waveform of the holding
-// electrode is searched, duration if that is a plain step, and wait before the latter. Unit: periods of the first mode.
+// Return of the carrying drive, which moves the switch to its contact, to its own hold level, in periods of the first mode. It
+// has the duration `back` if the waveform of the holding electrode is searched. If that electrode gives a plain step, it has
+// the duration back_of_step after the wait back_after.
 constexpr double back = 1, back_of_step = 5.7, back_after = 2;
 
 }  // namespace
@@ -182,7 +184,8 @@ double QuasiStatic::share(double deviations) const {
   return std::min(1 + deviations * approach_.deviation / reach, std::max(1.0, std::abs(approach_.limit) / reach));
 }
 
-// Returns the waveform parameters by closed formulas, for devices that carry a steady contact force from `steady` on [s].
+// Returns the waveform parameters by closed formulas. Devices carry a steady contact force from `steady` on [s]; the holding
+// electrode is at `low` before contact [V].
 std::vector<double> QuasiStatic::closed_form(double steady, double low) const {
   const double rise = share(impulses_ > 2 ? -slow_before : -fast_before), end = share(beyond);
   // Begin of the second ramp (line), in periods of the first mode: the end of the first ramp (rise), or half a period earlier
@@ -247,8 +250,8 @@ QuasiStatic QuasiStatic::paced(double steady) const {
   return own;
 }
 
-// Returns the waveform of the drive that carries the switch to its contact. `points` are volts of a piezo, or squares of an
-// electrode's volts [V^2], whose linear ramps are approximated by chords.
+// Returns the waveform of the drive that carries the switch to its contact. `points` are (time, volts) of a piezo, or (time,
+// square of volts) of an electrode. A ramp that is linear in the square becomes five chords of the voltage.
 Waveform QuasiStatic::carrying(Points points) const {
   if (!is_electrode_) return slewed(points, before_, limits_);
   constexpr int chords = 5;

@@ -26,10 +26,10 @@ constexpr std::array race_rounds{Round{.devices = 32, .closings = 2000, .step = 
                                  Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03},
                                  Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03}};
 constexpr std::size_t usual_rounds = 3;
-// Shares of bounce-free devices from which on searches are ranked by this share: after the first round, and after the others.
-// The second share is also needed to continue the best search.
+// Searches are ranked by their bounce-free share of devices if any of them has at least this share: enough_land after the first
+// round, many_land after later ones. Only with many_land is the best search continued after the last common round.
 constexpr double enough_land = 0.25, many_land = 0.4;
-// Increase of the bounce-free share in a round for which the best search is continued once more.
+// The best search is continued once more if its last round has raised its bounce-free share by more than this.
 constexpr double worth_going_on = 0.01;
 constexpr double population_by_share = 2, longer_where_many_land = 1.7;
 constexpr std::size_t first_devices = 16;  // number of devices on which starting points are tried
@@ -48,8 +48,8 @@ class Race {
        const RaceOptions& options)
       : settings_(settings), cost_(cost), aims_(aims), options_(options), budget_(budget, options.closings) {}
 
-  /// Runs a tournament between the searches `contenders`, or, if `alone`, the three usual rounds of a single search. The
-  /// searches may also begin at the waveforms `begun`.
+  /// Runs a tournament between the searches `contenders`, or, if `alone`, the three usual rounds of a single search. `begun`
+  /// are further waveforms at which the searches may begin.
   RaceResult run(std::vector<Contender> contenders, const std::vector<DriveWaveforms>& begun, bool alone) {
     alone_ = alone;
     length_ = static_cast<double>(options_.closings) / static_cast<double>(race_closings);
@@ -76,7 +76,8 @@ class Race {
  private:
   [[nodiscard]] const SearchSetting& setting(const Contender& r) const { return settings_[r.family]; }
   [[nodiscard]] const RobustAim& aim(const Contender& r) const { return r.by_share ? aims_.share : aims_.tail; }
-  // Returns the number that stands for the random devices and the aim of a search in the keys of the memory of evaluations.
+  // Returns the number that stands for the random devices, and for the measure of risk and conditions of a search, in the keys
+  // of the memory of evaluations.
   [[nodiscard]] std::uint64_t identity(const Contender& r) const {
     return random_bits(options_.seed, Stream::race, r.by_share ? 1 : 0);
   }
@@ -159,7 +160,8 @@ class Race {
     budget_.allow(budget_.taken() + std::lround(left));
   }
 
-  // Computes both costs and the bounce-free share of the best point of every search, on the first `devices` devices.
+  // Computes, for the best point of every search, both costs (RaceAims::tail and RaceAims::share) and the bounce-free share, on
+  // the first `devices` devices.
   void judge(std::vector<Contender>& contenders, std::size_t devices) {
     run_tasks(
         contenders.size(), options_.jobs,
@@ -174,11 +176,12 @@ class Race {
         budget_.stop());
   }
 
-  // Returns the cost by which searches are ranked: by the share of bounce-free devices, or by the tail of the cost.
+  // Returns the cost by which searches are ranked, as a member of Contender: that by RaceAims::share, or that by
+  // RaceAims::tail.
   static double Contender::*rank_by(bool share) { return share ? &Contender::share : &Contender::tail; }
 
-  // Returns the best search of every waveform family, ranked as by rank_by(): by the tail of the cost or by the bounce-free
-  // share; and, of all other searches, the best one by the other of these two measures.
+  // Returns the best search of every waveform family by one of two costs (RaceAims::tail or RaceAims::share, see rank_by()),
+  // and, of all other searches, the best one by the other cost.
   [[nodiscard]] std::vector<Contender> survivors(std::vector<Contender> contenders) const {
     std::ranges::stable_sort(contenders, {}, rank_by(many_));
     std::vector<Contender> kept, others;
@@ -205,7 +208,7 @@ class Race {
   const RaceAims& aims_;
   const RaceOptions& options_;
   SearchBudget budget_;  // budget of closings that the tournament may simulate
-  // Length of the tournament relative to the default, in general and if many devices are bounce-free.
+  // Number of closings of the tournament over the default number: in general, and if many devices are bounce-free.
   double length_ = 1, longer_ = 1;
   bool alone_ = false;  // true: a single search, not a tournament
   bool many_ = false;   // true: many devices are bounce-free after the last round, so that searches are ranked by this share

@@ -61,7 +61,8 @@ struct Contender {
 
 struct RaceOptions {
   long closings = race_closings;  ///< total number of closings of the tournament; its rounds are scaled to this number
-  bool are_a_budget = false;      ///< true: `closings` is a limit even if many devices close without a rebound
+  /// True: the tournament never exceeds `closings`; false: it may be longer if many devices are bounce-free.
+  bool are_a_budget = false;
   std::uint64_t seed = 1;
   int jobs = 1;  ///< number of threads; does not change the result
   /// Memory of evaluations; may be null. Its keys contain SearchSetting::family, which must therefore differ between settings.

@@ -22,7 +22,8 @@ constexpr double most_violation = 10;
 
 double value_of(const DeviceOutcome& outcome, const Condition& condition) { return outcome.of(condition.figure); }
 
-// Relative accuracy of the quadrature in closings that only rank candidate waveforms; the final evaluation has the scene's.
+// Relative accuracy of the quadrature in closings that only rank candidate waveforms; the final evaluation has that of the
+// scene.
 constexpr double ranking_accuracy = 1e-4;
 
 PreparedScene for_ranking(const PreparedScene& given) {
@@ -169,8 +170,8 @@ std::vector<Signal> RobustCost::signals(const std::vector<Waveform>& waveforms, 
                                : setting_.given.applied(waveforms);
 }
 
-// Computes the gains of every device's voltage sources. If the drive signals of devices differ by gains alone, they are
-// prepared once for all devices, since a sampled waveform has many breakpoints.
+// Computes the gains of every device's voltage sources, which are constant factors on their voltages. If the drive signals of
+// devices differ by gains alone, they are prepared once for all devices, since a sampled waveform has many breakpoints.
 void RobustCost::find_gains() {
   if (std::ranges::none_of(ensemble_.units, [&](const DeviceUnits& units) { return drives_.differ(units); })) return;
   ungained_levels_ = hold_levels(drives_.without_gains(setting_.drives({})));

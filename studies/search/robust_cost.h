@@ -68,13 +68,13 @@ struct RobustAim {
   FreeTime free = {};
 };
 
-/// Devices, and for each the exact factors that a per-device calibration measures.
+/// Devices, and the scale factors of their waveforms that a per-device calibration without measurement errors would give.
 struct CalibratedEnsemble {
   std::vector<SampledDevice> devices;
   std::vector<DeviceUnits> exact;  ///< exact factors by which the devices' waveforms are scaled; 1 for an invalid device
 };
-/// Builds the devices, and computes their quantities for a calibration without measurement error, pull-in voltages to the
-/// relative `precision`. Throws Interrupted if `progress` asks to stop.
+/// Builds the devices, and computes the quantities that a calibration measures, without measurement errors. The relative error
+/// of pull-in voltages is `precision`. Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] CalibratedEnsemble calibrate_all(const Ensemble& ensemble, const MeasuredQuantities& quantities, double precision,
                                                int jobs, const Progress& progress = {});
 /// Relative precision of computed pull-in voltages that scale the waveforms of devices, far finer than any instrument. If the
@@ -116,8 +116,8 @@ class RobustCost {
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
   /// Returns the measure of risk R(s) alone, without the terms of the cost for failing devices, time and conditions.
   [[nodiscard]] double measured(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
-  /// Simulates all devices under the plain step, longer and longer until 95 % of them carry a steady contact force, or up to
-  /// eight times the first duration.
+  /// Simulates all devices under the plain step until 95 % of them carry a steady contact force. Repeats this with longer
+  /// simulations, up to eight times the duration of the first.
   [[nodiscard]] std::vector<DeviceOutcome> close_by_step(int jobs) const;
   /// Simulates all devices. After first contact the simulation lasts for the scene's simulated time or for `free` [s],
   /// whichever is longer.
@@ -167,7 +167,7 @@ class RobustCost {
   // Closed equilibrium of the nominal device under the hold levels; none if these do not keep the device closed.
   std::optional<ClosedEquilibrium> nominal_closed_;
   std::vector<double> levels_;  // hold levels of the plain step on the nominal device [V]
-  std::vector<Kept> kept_;      // closed state of each device under these hold levels
+  std::vector<Kept> kept_;      // closed state of each device under the hold levels of the plain step
   // Simulated time after first contact, least time in contact after the last breakpoint, and longest wait for first contact
   // after the last breakpoint [s].
   double window_, tail_, wait_;

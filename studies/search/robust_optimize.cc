@@ -190,8 +190,8 @@ class HalvingSearch {
     return each;
   }
 
-  // Searches from a candidate and replaces it by the result. If the whole search used all devices, a worse result does not
-  // replace the candidate; otherwise the result is tried on all devices.
+  // Searches from a candidate and replaces the candidate by the result. If the search used all devices, only a better result
+  // replaces the candidate; otherwise every result does, and is then tried on all devices.
   void search(Candidate& candidate, Turn turn, Chain chain, SearchBudget& part) {
     long index = first_index_ + static_cast<long>(turn.number) * indices_of_search_;
     const bool on_all = chain.devices >= cost_.devices();
@@ -228,7 +228,7 @@ class HalvingSearch {
   std::vector<Variable> variables_;
   SearchBudget budget_;
   EvaluationLog log_;
-  // Candidate waveforms that continue in the next round (stage); results of all rounds.
+  // Candidate waveforms at which the next round (stage) begins, and the results of all rounds.
   std::vector<Candidate> leaders_, found_;
   // Closings for all rounds together (stages of the search), and the sum of Round::closings over the remaining rounds.
   double left_ = 0, shares_left_ = 0;

@@ -21,7 +21,7 @@ namespace softland {
 namespace {
 
 constexpr std::uint64_t devices_of_choice = 512, least_of_verdict = 500;
-constexpr std::size_t most_of_race = 3;  // number of candidates from a tournament, by each measure
+constexpr std::size_t most_of_race = 3;  // largest number of candidates taken from a tournament by each of its two costs
 // Latest permitted first contact, as a multiple of that under the plain step (95th percentiles). The second multiple is for
 // waveforms under which half the devices or more are bounce-free.
 constexpr double most_times = 5, most_times_of_landings = 7;
@@ -29,8 +29,7 @@ constexpr double margin = 0.98;      // upper limit of a chosen waveform's figur
 constexpr double more_open = 0.005;  // permitted excess of the share of devices that stay open over that under the plain step
 constexpr std::uint64_t which_searched = 0, which_chosen = 1;
 constexpr double least_of_race = 0.4,
-                 end_of_race =
-                     0.75;  // bounds on the end of all searches, before the final evaluation, as shares of a time budget
+                 end_of_race = 0.75;  // lower and upper bound of the time for all searches, as shares of a time budget
 // `approaches`: waveform families added to the search if a drive can move the switch to its contact through stable equilibria.
 constexpr std::string_view quasi_static_short = "quasi-static:2", approaches = "+quasi-static+quasi-static:2";
 constexpr std::string_view usual_prefix = "usual_limit.";
@@ -140,8 +139,8 @@ RobustSearch::RobustSearch(const SceneFile& file, const OptimizeOptions& options
   const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, families);
   settings_ = begins_gently(gentle, options.starts) ? gentle : std::move(settings);
   names_ = families_of(families);
-  // names_ and settings_ hold the waveform families of the tournament first, then the quasi-static ones, which search_paces()
-  // searches.
+  // Count the waveform families of the tournament: they come first in names_ and settings_, before the quasi-static families,
+  // which search_paces() searches.
   while (raced_ < names_.size() && !is_quasi_static(names_[raced_])) ++raced_;
   if (raced_ < names_.size()) approach_ = settings_[raced_].space.quasi_static()->approach();
   if (!devices_.is_of_before) usual_room_ = within_usual_room(raced_settings(), options_.actuator, names_);
@@ -299,7 +298,7 @@ void RobustSearch::make_aims(const std::vector<DeviceOutcome>& step, const FreeT
   const double step_time = quantile_95(step, key_of(&Metrics::initial_contact_time));
   const std::span<const Figure> figures = device_figures;
   tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
-  // If a condition of the user limits a time, the time until contact adds nothing else to the cost.
+  // If a condition of the user limits a time, the search does not minimise the time until contact in addition.
   free_ = free;
   tail_aim_.free = free;
   if (std::ranges::any_of(conditions_, is_about_time)) tail_aim_.free.until = std::numeric_limits<double>::infinity();
@@ -320,10 +319,11 @@ bool RobustSearch::says_when_to_close() const {
 }
 
 // Limits the time of the searches so that the final evaluation, whose closings take `closing` [s] each, fits into the time
-// budget; the searches keep at least the share least_of_race.
+// budget. The limit is between the shares least_of_race and end_of_race of the time budget, less `reserved` [s] for other work.
 void RobustSearch::reserve_for_verdict(double closing, double reserved) {
   constexpr double rows =
-      20;  // work per fresh device, in closings of a search: three long closings, three calibrated rows, the Pareto front
+      // Work per fresh device, in units of a closing in a search: long closings, closings with a calibration, the Pareto front.
+      20;
   const double verdict = rows * static_cast<double>(verdict_) * closing, all = options_.max_seconds;
   const double end = std::clamp(all - verdict, least_of_race * all, end_of_race * all) - reserved;
   before_verdict_.emplace(budget_, budget_.left(), end - budget_.elapsed());
@@ -435,7 +435,7 @@ std::vector<DeviceOutcome> RobustSearch::on_others(const DriveWaveforms& wavefor
 // used.
 RobustSearch::Placed RobustSearch::judged(ChosenFrom one, const std::vector<DeviceOutcome>& outcomes) const {
   RobustAim aim = aims_.tail;
-  if (approach_) aim.conditions = conditions_;  // a slow approach may make contact late
+  if (approach_) aim.conditions = conditions_;  // no limit on the time of first contact, which is late in a slow approach
   one.bounce_free = share_of(outcomes, is_bounce_free);
   one.tail = others_->value(outcomes, aim);
   one.measured = others_->measured(outcomes, aim);
@@ -457,7 +457,8 @@ bool RobustSearch::Placed::is_before(const Placed& other) const {
 }
 
 // Moves the candidate with the earliest first contact to the front, among candidates that cost at most little_more times the
-// least. It must not cost more than the candidate that this rule chooses from the tournament within the default voltage limits.
+// least. If a tournament ran within the default voltage limits, the chosen candidate may cost at most as much as the one that
+// the same rule chooses from that tournament.
 void RobustSearch::prefer_sooner(std::vector<Placed>& sorted) {
   const auto soonest = [&](double most, bool in_usual_room) {
     double least = std::numeric_limits<double>::infinity();

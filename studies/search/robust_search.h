@@ -82,7 +82,7 @@ inline constexpr double worth_choosing = 0.9;
 /// A candidate for the best waveform, with its performance on the devices on which the best one is chosen (not used by the
 /// searches).
 struct ChosenFrom {
-  std::string measure, family;  ///< measure of risk and waveform family of the search that found it, as in RaceEntry
+  std::string measure, family;  ///< measure of risk and waveform family of the search that found the candidate, as in RaceEntry
   DriveWaveforms waveforms;
   std::map<std::string, double>
       parameters;  ///< waveform parameters by drive.name; empty for some waveforms of the search on the nominal device
@@ -147,13 +147,13 @@ class RobustSearch {
   /// `before`. Calls `looked` once, after the first candidate was evaluated on the devices for choosing. Leaves `reserved` [s]
   /// of a time budget to later work other than the final evaluation. Throws Interrupted if a stop is requested.
   void run(std::size_t before, std::function<void()> looked, double reserved);
-  /// Makes run() end soon, without a usable result; from any thread.
+  /// Makes run() end soon, without a usable result. May be called from any thread.
   void give_up() { budget_.give_up(); }
 
   /// Returns the slow approach by which a drive moves the switch to its contact through stable equilibria; none if the
   /// quasi-static approach is not searched.
   [[nodiscard]] const std::optional<StableApproach>& approach() const { return approach_; }
-  /// Returns the share of devices that this drive can move to their contact through stable equilibria.
+  /// Returns the share of devices that the drive of approach() can move to their contact through stable equilibria.
   [[nodiscard]] double share_with_path() const { return share_with_path_; }
 
   /// Returns the time until contact that adds nothing to the cost, as found on devices under the plain step. This function and

@@ -17,10 +17,10 @@
 namespace softland {
 namespace {
 
-// Numbers of devices on which the candidates of the nominal search are ranked.
+// Numbers of varied devices on which the candidates of the nominal search are compared: first all candidates, then the best.
 constexpr std::size_t scouted_on = 16, ranked_on = 64;
-constexpr std::size_t kept_of_scouted = 24;  // best candidates on `scouted_on` devices, by each measure
-constexpr std::size_t most_of_ranked = 2;    // best candidates on `ranked_on` devices, by each measure
+constexpr std::size_t kept_of_scouted = 24;  // candidates kept after `scouted_on` devices, by each of two costs
+constexpr std::size_t most_of_ranked = 2;    // candidates kept after `ranked_on` devices, by each of two costs
 constexpr std::size_t most_judged = 3;       // largest number of candidates tried on fresh devices
 constexpr double end_of_drawing = 0.3;       // end of the search on the nominal device, as a share of a time budget
 
@@ -99,8 +99,8 @@ class RobustSearchStudy {
     return own;
   }
 
-  // Starts the search over devices in parallel, and waits until it has evaluated a first candidate; only then the search on the
-  // nominal device begins. `before` is the number of waveform families of the latter.
+  // Starts the search over devices in parallel, and waits until it has evaluated a first candidate. Only then the search on the
+  // nominal device begins, which has `before` waveform families.
   void search_beside(std::size_t before) {
     const bool is_beside = options_.jobs > 1, is_timed = std::isfinite(options_.max_seconds);
     const double of_drawing = is_timed ? end_of_drawing * options_.max_seconds : 0;
@@ -108,7 +108,8 @@ class RobustSearchStudy {
     const std::future<void> look = looked.get_future();
     beside_ = std::async(is_beside ? std::launch::async : std::launch::deferred,
                          [this, before, reserved = is_beside ? 0 : of_drawing, given = std::move(looked)]() mutable {
-                           // If no candidate was evaluated, the destructor of `own` ends look.wait().
+                           // If no candidate is evaluated, the destructor of the promise `own` ends the wait for it in
+                           // look.wait().
                            std::promise<void> own = std::move(given);
                            searched_.run(
                                before, [&own] { own.set_value(); }, reserved);
@@ -152,7 +153,8 @@ class RobustSearchStudy {
     return first().space.searched(result_->drawing.best_scene->drives.waveforms());
   }
 
-  // Returns those candidates of the search on the nominal device that perform best on varied devices, with its result first.
+  // Returns those candidates of the search on the nominal device that perform best on varied devices. The result of that search
+  // comes first.
   std::vector<ChosenFrom> ranked_again() {
     std::vector<ChosenFrom> all;
     for (TriedWaveform& one : result_->drawing.tried)
@@ -170,7 +172,8 @@ class RobustSearchStudy {
     return all;
   }
 
-  // Returns the candidates with the least cost on the first `devices` devices: the best `kept` by each measure of risk.
+  // Returns the candidates with the least cost on the first `devices` devices: the best `kept` by the tail of the cost, and the
+  // best `kept` by the bounce-free share.
   std::vector<ChosenFrom> best_on(std::vector<ChosenFrom> all, std::size_t devices, std::size_t kept) {
     struct Ranked {
       double tail, share;
@@ -212,7 +215,7 @@ class RobustSearchStudy {
       if (one.name != default_choice) drives.push_back(named(one.name.c_str(), one.candidate));
     }
     if (undelayed_) drives.push_back(named(undelayed_row, *undelayed_));
-    drives.push_back(of_candidate(0));  // reports describe the last set of waveforms
+    drives.push_back(of_candidate(0));  // reports describe the last waveforms in this list
     result_->verdict = robustness(result_->varied, drives, verdict_options(), progress_);
     result_->interrupted = result_->verdict.interrupted;
     add_row(plain_step_row, plain_step(first().given, options_.actuator));
@@ -321,8 +324,8 @@ class RobustSearchStudy {
   }
   [[nodiscard]] NamedDrive of_candidate(std::size_t n) const { return named(for_the_devices, result_->candidates[n]); }
 
-  // Adds a row to the table of results. The evaluated waveform is found in the final evaluation by its name, or by equal drive
-  // signals.
+  // Adds a row to the table of results, with the results of the final evaluation for the waveform of this name, or else for a
+  // waveform with equal drive signals.
   void add_row(const char* name, const DriveWaveforms& waveforms) {
     const std::vector<DriveRobustness>& drives = result_->verdict.drives;
     auto found = std::ranges::find(drives, std::string_view(name), &DriveRobustness::name);
@@ -477,8 +480,8 @@ class RobustSearchStudy {
   OptimizeOptions drawing_options_;
   // Result of the whole search; empty until the search on the nominal device has ended.
   std::optional<RobustSearchResult> result_;
-  // The best candidate with the electrode's plain step at t = 0, as an extra row of results, if the result may have a later
-  // step.
+  // The best candidate with the electrode's plain step at t = 0. It gets a row of results, for comparison, if the search may
+  // choose the instant of this step.
   std::optional<ChosenFrom> undelayed_;
   // Search over devices in another thread; the last member, since it uses the others until it is destroyed.
   std::future<void> beside_;

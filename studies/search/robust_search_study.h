@@ -61,7 +61,7 @@ struct RobustSearchResult {
   OptimizeResult best;
   std::optional<ChosenFrom> chosen = {};    ///< candidate that became the result; empty if the plain step is best
   std::vector<ChosenFrom> candidates = {};  ///< candidates among which the result was chosen, the best first
-  /// Waveforms offered to the user, that with the earliest steady contact first; empty if the plain step is best.
+  /// Waveforms offered to the user, the waveform with the earliest steady contact first; empty if the plain step is best.
   std::vector<DeviceChoice> choices = {};
   FreeTime free = {};  ///< part of the time until contact that added nothing to the cost in the search
   /// Slow approach by which a drive can move the switch to its contact through stable equilibria; empty if no drive can.

@@ -20,8 +20,8 @@ namespace softland {
 namespace {
 
 constexpr double latest_touch = 2.5;  // latest permitted time of first contact, as a multiple of the plain step's
-// First contact is penalised less up to these multiples of its time under the plain step: an electrode can close softly in
-// about the time of the step, a piezo only slows the beam.
+// A late first contact costs little up to these multiples of its time under the plain step. An electrode can close softly in
+// about the time of the step (driven_touch); a piezo only slows the beam (braked_touch).
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;  // relative tolerance of the integrator in a search, which gives costs to about 1e-4
 constexpr double most_broken = 10;         // largest counted violation of a condition, relative to its limit
@@ -32,8 +32,8 @@ constexpr double weight_of_speed = 0.04;
 constexpr double hopeless = 0.25;
 constexpr double golden_ratio = 1.618033988749895;
 
-// Returns estimated figures as the baseline if the plain step does not close the switch; an overshooting initial pulse may
-// still close it.
+// Returns an estimate of the plain step's figures, the baseline, for a switch that the plain step does not close; an
+// overshooting initial pulse may still close it.
 Metrics imagined_step(const PreparedScene& given, double period) {
   const double gap = given.scene.device.contact_gap();
   Metrics step;
@@ -109,7 +109,8 @@ PreparedScene prepared_with(const PreparedScene& prepared, DriveWaveforms wavefo
 PreparedScene read_back(const SceneFile& file, const std::string& name, const PreparedScene& given) {
   PreparedScene p = choose(prepare(file.again(name)));
   p.scene.warnings = given.scene.warnings;
-  // Keep the other drives' voltages for computing pull-in voltages: from a text in volts they would all be hold levels.
+  // Keep the voltages of the other drives for computing pull-in voltages (`standing`): the text in volts does not show which
+  // hold levels depend on pull-in voltages.
   p.scene.standing = given.scene.standing;
   return p;
 }
@@ -264,7 +265,8 @@ SignalSlopes SearchSetting::signal_slopes(std::span<const double> x, const std::
 }
 
 std::vector<ParameterGroup> SearchSetting::parameter_groups() const {
-  std::vector<double> inside;  // a point at which no two parameters are at the same share of their range
+  // A point inside the bounds; parameters at different shares of their ranges do not coincide by chance.
+  std::vector<double> inside;
   for (const Variable& v : space.variables())
     inside.push_back(std::lerp(v.lower, v.upper, 0.3 + 0.4 * std::fmod(golden_ratio * static_cast<double>(inside.size()), 1.0)));
   return signal_slopes(inside).groups();

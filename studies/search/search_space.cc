@@ -195,8 +195,8 @@ VectorXd course_of(const DriveSearch& drive, const Signal& signal, double end) {
 }
 
 double end_of_course(const DriveSearch& drive, const Signal& given) {
-  // Two waveforms are compared until the larger of these multiples: of the last breakpoint, and of the plain step's first
-  // contact.
+  // Two waveforms are compared until the later of two times: `beyond` times the last breakpoint of the given waveform, and
+  // `least` times the first contact under the plain step.
   constexpr double beyond = 1.25, least = 2.5;
   return std::max(beyond * given.breakpoints().back(), least * drive.first_touch);
 }

@@ -106,8 +106,9 @@ double add_dither_variables(DriveSearch& s, const PreparedScene& p, double t0) {
 
 SlewedDither slewed_dither(const DriveSearch& s, double amplitude, double omega, double decay, double start, double duration,
                            double fade) {
-  // With a slew limit the sine begins after the base has risen, and its fades are longer, since the slope of the envelope adds
-  // to that of the sine. A fade is at most half the duration; if the sine is still too steep, its amplitude is reduced.
+  // With a slew limit the sine begins after the rise to its base voltage, and its fades are longer, since the slope of the
+  // envelope adds to that of the sine. A fade is at most half the duration; if the sine is still too steep, its amplitude is
+  // reduced.
   const double slew = s.limits.max_slew, rise = longest_rise(s);  // infinite and 0 [s] without a slew limit
   const double turning = omega + 1 / decay;
   const double needed = amplitude * turning < slew ? amplitude / (slew - amplitude * turning) : never;

@@ -89,7 +89,8 @@ std::optional<Swing> quickest_swing(const Switch& model, const std::vector<doubl
   }
   swing.states = drives.fly(high).states;
   swing.driven_time = high;
-  // One time step is shorter, which ends at the release; the error is negligible for a starting point of a search.
+  // The time step that ends at the release is shorter than the others, which is neglected here: the error does not matter for a
+  // starting point of a search.
   swing.releasing_time = std::max(0.0, static_cast<double>(swing.states.size() - 1) * swing.step - high);
   return swing;
 }

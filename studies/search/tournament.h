@@ -61,8 +61,8 @@ struct Tournament {
   int jobs = 1;
   /// Divides the budget: returns the part of each search in a round of `contenders` searches.
   std::function<RoundShare(const Round&, std::size_t contenders)> share;
-  /// Runs the search of a contender within `part`, the budget of the round. It must set start and seed of `chain`. Called from
-  /// several threads.
+  /// Runs the search of a contender within `part`, the budget of the round. This function must set start and seed of its copy
+  /// of `chain`. It is called from several threads.
   std::function<void(Contender&, Turn turn, const Chain& chain, SearchBudget& part)> search;
   /// Compares the searches (contenders) after a round, whose number counts from 0, and returns those of the next round.
   std::function<std::vector<Contender>(std::vector<Contender> contenders, std::size_t round)> select;

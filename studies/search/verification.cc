@@ -134,7 +134,8 @@ bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline) {
     return best.touched() && figure(target, best, baseline) < figure(target, baseline, baseline);
   if (!best.settled || best.bounce_count > 0) return false;
   if (!target.has_own_cost()) return true;
-  // The plain step bounces for many times its closing time: to settle earlier than that would be too weak a goal.
+  // Compare a settling time with the plain step's first contact: to settle earlier than the plain step, which bounces for many
+  // times its closing time, would be too weak a goal.
   const bool is_settling = !target.is_sum() && target.is_about(Target::settling);
   if (is_settling && std::isfinite(baseline.initial_contact_time))
     return best.permanent_contact_time <= settling_goal * baseline.initial_contact_time;
