@@ -42,8 +42,8 @@ constexpr std::size_t fewest_hopping = 16;
 constexpr long iterations_of_hop = 8;
 constexpr long evaluations_of_iteration = 1 + evaluations_of_gradient;
 
-// Largest required distance between start points, first step of a local search, and first step of a search that refines a
-// point, as fractions of the box of the variables.
+// Largest required distance between start points (largest_separation), first step of a local search (first_step), and first
+// step of a search that refines a point (polishing_step), as fractions of the box of the variables.
 constexpr double largest_separation = 0.15;
 constexpr double first_step = 0.25;
 constexpr double polishing_step = 0.02;

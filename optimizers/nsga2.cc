@@ -121,9 +121,9 @@ const Member& tournament(const std::vector<Member>& members, Draws& draws) {
   return b.crowding > a.crowding ? b : a;
 }
 
-/// Returns the random distance of two children from the middle of their parents in one variable. `u` is a uniform random
-/// number, and `index` the distribution index. `room` is the distance from the middle to the bound on the child's side. The
-/// unit of both distances is half the distance of the parents.
+/// Returns the random distance of two children from the middle of their parents, for one variable. The number `u` is uniform,
+/// and `index` is the distribution index. The distance `room` is that from the middle to the bound on the child's side. Both
+/// distances are in halves of the parents' distance.
 double spread_factor(double u, double room, double index) {
   const double all = 2 - std::pow(room, -(index + 1));
   const double part = u * all;

@@ -23,8 +23,8 @@ inline constexpr const char *plain_step_row = "plain step", *for_the_drawing = "
 /// Name of the choice whose waveform is in best.toml, among the waveforms offered to the user.
 inline constexpr const char* default_choice = "default";
 
-/// A point of the Pareto front of candidate waveforms in contact time and impact velocity, as evaluated on fresh devices (new
-/// to the search).
+/// A point of the Pareto front of candidate waveforms in time of first contact and impact velocity, as evaluated on fresh
+/// devices (new to the search).
 struct FrontPoint {
   /// 95th percentiles of the first contact time [s] and of the impact velocity [m/s].
   double first_touch = Metrics::unset, impact_speed = Metrics::unset;

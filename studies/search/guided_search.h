@@ -22,7 +22,7 @@ struct SearchCosts {
   double target = std::numeric_limits<double>::infinity();
   bool lands = false;  ///< true if the switch closes without a significant rebound
   /// Costs of a point without the penalty for violated conditions, and the excess g of each condition, which is fulfilled if g
-  /// <= 0. Optimizers with constraints use these.
+  /// <= 0. Optimizers with constraints use these values.
   struct Apart {
     double guide, target;
     std::vector<double> excess;

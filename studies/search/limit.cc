@@ -171,8 +171,8 @@ class LeastTimeSearch {
     }
   }
 
-  // Requires that the modes end ever closer to rest (rest_distances), by one solution for each distance: Ipopt does not find a
-  // motion that ends at rest in one step. Calls `nearer` after each solution.
+  // Requires that the modes end ever closer to rest, by one solution for each of rest_distances: Ipopt needs these intermediate
+  // solutions to find a motion that ends at rest. Calls `nearer` after each solution.
   Status come_to_rest(const VectorXd& landed, const std::function<void()>& nearer = {}) {
     const Index n = first_touch_.states();
     for (Index r = 0; r < n; ++r) problem_.at_the_end.push_back({.row = VectorXd::Unit(n, r)});

@@ -118,8 +118,8 @@ struct Limit {
 };
 
 /// Computes the least closing time of any waveform. An interrupted run returns the results so far, or throws Interrupted before
-/// the first result. Throws the exceptions of least_time(), and InvalidInput if the plain step does not touch and no impact
-/// velocity is given, if the controlled electrode pulls away from the contact, and if a starting waveform begins at another
+/// the first result. Throws the exceptions of least_time(). Throws InvalidInput without a given impact velocity if the plain
+/// step does not touch, for a controlled electrode that pulls away from the contact, and for a starting waveform at another
 /// equilibrium than the scene.
 [[nodiscard]] Limit limit(const SceneFile& file, const LimitOptions& options, const Progress& progress = {});
 

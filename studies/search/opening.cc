@@ -54,7 +54,7 @@ class ReleaseSearch {
         pulses_(given, options.actuator, hold_levels(signals_of(given.waveforms())), "release"),
         plain_(applied(pulses_.plain())) {}
 
-  /// Returns the signals of the plain opening: every drive goes to 0 V at once, as far as its source can.
+  /// Returns the signals of the plain opening: every drive goes to 0 V at once, or as fast as its source can.
   [[nodiscard]] const std::vector<Signal>& plain() const { return plain_; }
   [[nodiscard]] std::vector<Signal> signals(std::span<const double> x) const { return applied(pulses_.commanded(x)); }
 

@@ -339,7 +339,8 @@ class RunningSearch {
     return now.termination != Termination::interrupted && now.termination != Termination::failure;
   }
 
-  // Updates the improving evaluations and the best point in all_ from the log of all waveform families.
+  // Updates, in all_, the best point and the list of evaluations that were the best so far, from the log of all waveform
+  // families.
   void take_improvements() {
     all_.improvements = improvements_of(log_.evaluations());
     if (all_.improvements.empty()) return;

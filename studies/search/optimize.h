@@ -177,11 +177,11 @@ inline constexpr double settling_goal = 1.3;
 /// 0 if the excess is at most a thousandth.
 [[nodiscard]] double hardness_beyond_step(const Metrics& closing, const Metrics& step);
 
-/// True if the closing `best` meets the goal of the target. For a user objective from Aim::from_the_start(): the switch touches
-/// with a lower value than the baseline. For all other targets: the contact settles without a significant rebound. For
-/// `settling`: it also settles within settling_goal, or before the baseline does, if the baseline does not touch. For other
-/// targets whose cost differs from that of bounce, and for sums of targets: their figure is also better than the baseline's.
-/// The figure of a sum is the weighted mean of the figures relative to the baseline.
+/// True if the closing `best` meets the goal of the target. For a user objective from Aim::from_the_start() the switch must
+/// make contact with a lower objective than the baseline. For all other targets the contact must settle without a significant
+/// rebound. For `settling` it must also settle within settling_goal, or before the baseline does, if the baseline does not
+/// touch. For other targets whose cost differs from that of bounce, and for sums of targets, their figure must also be better
+/// than the baseline's. The figure of a sum is the weighted mean of the figures relative to the baseline.
 [[nodiscard]] bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline);
 
 }  // namespace softland

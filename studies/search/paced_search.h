@@ -16,8 +16,8 @@ struct Pace {
   std::size_t family = 0;  ///< index of the waveform family among the settings of the search
 };
 
-/// Searches the waveforms of a quasi-static approach at a pace. `setting` is that of a quasi-static waveform family. `aim` is
-/// the aim of the whole search; its FreeTime holds the time until a steady force under the plain step. Returns nothing if no
+/// Searches the waveforms of a quasi-static approach at a pace. The waveform family of `setting` must be quasi-static. The aim
+/// of the whole search, `aim`, holds in its FreeTime the time until a steady force under the plain step. Returns nothing if no
 /// waveform of this pace is within the limits, or if the budget ends before a waveform was tried. RaceOptions::closings scales
 /// the number of closings of this search, as in race().
 [[nodiscard]] std::optional<Contender> search_at_pace(const SearchSetting& setting, const Pace& pace, const RobustCost& cost,

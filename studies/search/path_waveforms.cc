@@ -21,7 +21,7 @@ DriveWaveforms tables_of(const FirstTouchProblem& flight, const ControlledCourse
   if (flight.ramps()) {
     for (Eigen::Index k = 0; k < columns; ++k) add(course.knots[static_cast<std::size_t>(k)] * end, at(k));
   } else {
-    // Neighbouring controls that differ by less than the error of the optimal control are one constant level.
+    // Controls of neighbouring intervals that differ by less than the error of the optimal control become one constant level.
     constexpr double same = 1e-9;
     Eigen::Index level = 0;
     add(0, at(0));

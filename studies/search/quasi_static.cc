@@ -44,7 +44,7 @@ class BrokenLine {
     }
   }
   /// Adds a smooth edge of duration `length`: a ramp in half this time, which an input shaper of three impulses spreads over
-  /// the whole.
+  /// the whole duration.
   void add_edge(double begin, double length, double height) { add(begin, begin + length / 2, height, 3, length / 2); }
   void add_line(double begin, double end, double height) { ramps_.push_back({begin, end, height}); }
 
@@ -120,10 +120,10 @@ constexpr double nearest_points = 1e-6;  // least distance in time of two corner
 // of the first mode. It is step_after_line if this rise is a plain step, and holder_after_line if its waveform is searched.
 constexpr double step_after_line = 1.2, holder_after_line = 0.8;
 constexpr double settle = 0.5;  // duration of an edge to the hold level, in periods of the first mode
-// Levels of the holding electrode before contact, as shares of its hold level: least level at contact in a start, and upper
-// bound in the search.
+// Levels of the holding electrode before contact, as shares of its hold level: the least level at first contact in a starting
+// point, and the upper bound in the search.
 constexpr double least_contact_level = 0.16, most_low = 0.5;
-// Levels of the holding electrode before contact in further starts, as shares of its hold level.
+// Levels of the holding electrode before contact in further starting points, as shares of its hold level.
 constexpr std::array lower_levels{0.03, 0.12};
 // Return of the carrying drive, which moves the switch to its contact, to its own hold level, in periods of the first mode. It
 // has the duration `back` if the waveform of the holding electrode is searched. If that electrode gives a plain step, it has

@@ -27,7 +27,7 @@ constexpr std::array race_rounds{Round{.devices = 32, .closings = 2000, .step = 
                                  Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03}};
 constexpr std::size_t usual_rounds = 3;
 // Searches are ranked by their bounce-free share of devices if any of them has at least this share: enough_land after the first
-// round, many_land after later ones. Only with many_land is the best search continued after the last common round.
+// round, many_land after later ones. Only from many_land on is the best search continued beyond the usual three rounds.
 constexpr double enough_land = 0.25, many_land = 0.4;
 // The best search is continued once more if its last round has raised its bounce-free share by more than this.
 constexpr double worth_going_on = 0.01;
@@ -211,7 +211,7 @@ class Race {
   // Number of closings of the tournament over the default number: in general, and if many devices are bounce-free.
   double length_ = 1, longer_ = 1;
   bool alone_ = false;  // true: a single search, not a tournament
-  bool many_ = false;   // true: many devices are bounce-free after the last round, so that searches are ranked by this share
+  bool many_ = false;   // true: many devices are bounce-free after the latest round, so that searches are ranked by this share
   RaceResult result_;
 };
 

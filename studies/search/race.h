@@ -7,9 +7,10 @@
 //          the first again, if two fifths of the devices are     8000               128       0.03
 //          bounce-free, repeated while the share gains 1 %
 //
-// The measures are the tail of the cost and the share of bounce-free devices. If a quarter of the devices close without a
-// rebound after round A, the next rounds are 1.7 times as long, unless the number of closings is a fixed budget. Searches by
-// the share use CMA-ES generations of twice the usual size, since the share hardly changes between neighbouring points.
+// The measures are the tail of the cost (such as the mean cost of the worst tenth of the devices) and the bounce-free share of
+// the devices. If a quarter of the devices close without a rebound after round A, the next rounds are 1.7 times as long, unless
+// the number of closings is a fixed budget. Searches by the share use CMA-ES generations of twice the usual size, since the
+// share hardly changes between neighbouring points.
 //
 // The results of the searches are evaluated on the devices of the next round. They are ranked by the share of bounce-free
 // devices if the share of any search is a quarter or more (two fifths in the last round). Otherwise they are ranked by the tail

@@ -58,8 +58,8 @@ struct FreeTime {
   /// infinite: no time adds to the cost.
   double until = 0;
 };
-/// Returns the time until contact that adds nothing to the cost, from the outcomes `of_step` of devices under the plain step; 0
-/// if fewer than 95 % of the devices make contact. Throws no exception.
+/// Returns how long devices may take until contact at no cost: the 95th percentile under the plain step, from the outcomes
+/// `of_step` of devices; 0 if fewer than 95 % of them make contact. Throws no exception.
 [[nodiscard]] FreeTime free_time(std::span<const DeviceOutcome> of_step);
 
 struct RobustAim {
@@ -71,7 +71,8 @@ struct RobustAim {
 /// Devices, and the scale factors of their waveforms that a per-device calibration without measurement errors would give.
 struct CalibratedEnsemble {
   std::vector<SampledDevice> devices;
-  std::vector<DeviceUnits> exact;  ///< exact factors by which the devices' waveforms are scaled; 1 for an invalid device
+  /// Scale factors of the devices' waveforms without measurement errors; 1 for an invalid device.
+  std::vector<DeviceUnits> exact;
 };
 /// Builds the devices, and computes the quantities that a calibration measures, without measurement errors. The relative error
 /// of pull-in voltages is `precision`. Throws Interrupted if `progress` asks to stop.
@@ -88,9 +89,9 @@ struct BuiltEnsemble {
   /// Measured factors by which each device's waveforms are scaled, relative to those of the nominal device.
   std::vector<DeviceUnits> units;
 };
-/// Returns the devices with their measured factors: the exact ones with random errors of the calibration `known`, which depend
-/// only on `seed` and the number of the device. `calibrated` must contain the quantities of `known`. A device that cannot be
-/// measured is marked as refused.
+/// Returns the devices with the scale factors that the calibration `known` measures. These are the factors of `calibrated` with
+/// random errors, which depend only on `seed` and the number of the device. `calibrated` must contain the quantities of
+/// `known`. A device that cannot be measured is marked as refused.
 [[nodiscard]] BuiltEnsemble known_as(CalibratedEnsemble calibrated, const MeasuredUnits& known, std::uint64_t seed);
 /// Builds the devices, with their measured factors as by known_as(). Throws Interrupted if `progress` asks to stop.
 [[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const MeasuredUnits& known, std::uint64_t seed, int jobs,
@@ -168,8 +169,8 @@ class RobustCost {
   std::optional<ClosedEquilibrium> nominal_closed_;
   std::vector<double> levels_;  // hold levels of the plain step on the nominal device [V]
   std::vector<Kept> kept_;      // closed state of each device under the hold levels of the plain step
-  // Simulated time after first contact, least time in contact after the last breakpoint, and longest wait for first contact
-  // after the last breakpoint [s].
+  // Simulated time after first contact (window_), least time in contact (tail_) and longest wait for first contact (wait_),
+  // both after the last breakpoint [s].
   double window_, tail_, wait_;
 };
 

@@ -67,7 +67,7 @@ struct RobustResult {
 /// `options.optimizer` is not used. Throws InvalidInput as optimize() does, and for a scene without [spread].
 [[nodiscard]] RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& robust);
 
-/// The parameters that a search will vary, and the significance limit of its rebounds.
+/// The parameters that a search will vary, and the height from which on the search counts a rebound.
 struct SearchedParameters {
   FamilyColumns columns;
   double significant_rebound = 0;  ///< height from which on a rebound is significant [m]

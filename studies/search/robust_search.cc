@@ -251,7 +251,8 @@ void RobustSearch::race_all() {
 }
 
 std::vector<Pace> RobustSearch::paces_of_search() const {
-  // Use the waveform family with the short input shaper, if it is searched, for a pace with a short permitted time.
+  // Use the waveform family with the short input shaper (two impulses), if it is searched, for a pace with a short permitted
+  // time.
   const auto of = [this](double times) {
     constexpr double short_below = 0.75;
     const bool is_short = times < short_below && names_.back() == quasi_static_short;
@@ -322,8 +323,7 @@ bool RobustSearch::says_when_to_close() const {
 // budget. The limit is between the shares least_of_race and end_of_race of the time budget, less `reserved` [s] for other work.
 void RobustSearch::reserve_for_verdict(double closing, double reserved) {
   constexpr double rows =
-      // Work per fresh device, in units of a closing in a search: long closings, closings with a calibration, the Pareto front.
-      20;
+      20;  // work per fresh device, in closings of a search: long closings, calibrated closings, closings for the Pareto front
   const double verdict = rows * static_cast<double>(verdict_) * closing, all = options_.max_seconds;
   const double end = std::clamp(all - verdict, least_of_race * all, end_of_race * all) - reserved;
   before_verdict_.emplace(budget_, budget_.left(), end - budget_.elapsed());
@@ -359,7 +359,7 @@ ChosenFrom RobustSearch::candidate_of(const Contender& contender) const {
   return c;
 }
 
-// Adds the best candidates of a tournament by each measure to `pool`, from which the best waveform is chosen later.
+// Adds the best candidates of a tournament by each of its two costs to `pool`, from which the best waveform is chosen later.
 void RobustSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool is_in_usual_room) const {
   for (const bool by_share : {false, true}) {
     std::ranges::stable_sort(raced.contenders, {}, [&](const Contender& r) { return by_share ? r.share : r.tail; });

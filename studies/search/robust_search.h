@@ -101,7 +101,7 @@ struct ChosenFrom {
   bool is_in_usual_room = false;  ///< true if the tournament within the default voltage limits found the candidate
 };
 
-/// If a waveform makes this share of the devices bounce-free, candidates are compared by this share, otherwise by their cost.
+/// From this bounce-free share of devices on, waveforms are compared by their bounce-free shares; below it, by other figures.
 inline constexpr double lands_half = 0.5;
 
 /// Return a quantile over devices of the figure `key` of device_figures, and its 95th percentile.
@@ -156,7 +156,7 @@ class RobustSearch {
   /// Returns the share of devices that the drive of approach() can move to their contact through stable equilibria.
   [[nodiscard]] double share_with_path() const { return share_with_path_; }
 
-  /// Returns the time until contact that adds nothing to the cost, as found on devices under the plain step. This function and
+  /// Returns how long devices may take until contact at no cost, as found on devices under the plain step. This function and
   /// the following ones are valid after run().
   [[nodiscard]] const FreeTime& free() const { return free_; }
   /// Returns the cost over the devices on which the tournament tries waveforms.
@@ -271,7 +271,8 @@ class RobustSearch {
   std::vector<Placed> looked_at_;  // candidates evaluated while the tournament ran, in order of time
   std::optional<Placed> leader_;   // the best candidate in looked_at_
   std::vector<Placed> placed_;     // candidates evaluated by place(), in order of time
-  // Fresh devices (new to the search) with exact factors for a calibration by pull-in voltage, and by closing time.
+  // Fresh devices (new to the search) with their scale factors without measurement errors, for a calibration by pull-in voltage
+  // and for one by closing time.
   std::optional<CalibratedEnsemble> calibrated_by_pull_in_, calibrated_by_time_;
   // Simulates the measurements of a calibration; empty if devices cannot be measured.
   std::optional<PullInMeter> meter_;

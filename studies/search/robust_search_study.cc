@@ -77,8 +77,8 @@ class RobustSearchStudy {
     }
   }
 
-  // Returns the options of the search on the nominal device. It keeps candidate waveforms, which are then ranked on varied
-  // devices; its on_start also passes on the parameters of the search over devices.
+  // Returns the options of the search on the nominal device. This search keeps candidate waveforms, which are then ranked on
+  // varied devices; its on_start also passes on the parameters of the search over devices.
   OptimizeOptions options_of_drawing() {
     OptimizeOptions own = options_;
     own.keep_tried = true;
@@ -339,8 +339,8 @@ class RobustSearchStudy {
     if (found != drives.end()) result_->rows.push_back({.name = name, .knowledge = found->known.calibration(), .judged = *found});
   }
 
-  // Decides the result by the fresh devices: the first candidate that is no worse than the plain step, otherwise the plain
-  // step.
+  // Decides the result by the final evaluation on fresh devices: the first candidate that is no worse than the plain step,
+  // otherwise the plain step.
   void decide() {
     const double significant = first().given.scene.metrics.significant_rebound;
     std::vector<DriveRobustness>& drives = result_->verdict.drives;

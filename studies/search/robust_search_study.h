@@ -5,7 +5,7 @@
 //      step. The best candidate so far is reported.
 //   2  After a first candidate was evaluated on the 512 devices, the search on the nominal device (optimize.h) for a
 //      waveform of the nominal design. The two searches are independent.
-//   3  Candidates of the nominal search are ranked on 16 devices, the best of them on 64, and the best of these on the 512.
+//   3  Candidates of the nominal search are compared on 16 devices, the best of them on 64, and the best of these on the 512.
 //   4  Searches with a per-device calibration: Vdp to 1 %, and the closing time of one slow step to 50 ns. Vdp and period to
 //      0.2 % replace the closing time if the switch is too quick. A calibrated search is repeated under conditions if its
 //      result closes harder than the plain step.
@@ -63,7 +63,7 @@ struct RobustSearchResult {
   std::vector<ChosenFrom> candidates = {};  ///< candidates among which the result was chosen, the best first
   /// Waveforms offered to the user, the waveform with the earliest steady contact first; empty if the plain step is best.
   std::vector<DeviceChoice> choices = {};
-  FreeTime free = {};  ///< part of the time until contact that added nothing to the cost in the search
+  FreeTime free = {};  ///< time that devices may take until contact at no cost in the search
   /// Slow approach by which a drive can move the switch to its contact through stable equilibria; empty if no drive can.
   std::optional<StableApproach> approach = {};
   /// Results on the fresh devices (new to the search) under the plain step, the nominal design's waveform and the best

@@ -24,9 +24,9 @@ constexpr double latest_touch = 2.5;  // latest permitted time of first contact,
 // about the time of the step (driven_touch); a piezo only slows the beam (braked_touch).
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;  // relative tolerance of the integrator in a search, which gives costs to about 1e-4
-constexpr double most_broken = 10;         // largest counted violation of a condition, relative to its limit
-// Weight of the impact velocity in a cost over several numbers of modes. It hardly counts in the cost of bounce alone, but is
-// what further modes change most.
+constexpr double most_broken = 10;  // upper limit of the counted violation of a condition, relative to the condition's limit
+// Weight of the impact velocity in a cost over several numbers of modes. The cost of bounce alone hardly depends on the impact
+// velocity, which further modes change most.
 constexpr double weight_of_speed = 0.04;
 // Cost of bounce from which on a candidate is too bad to be simulated with more modes; the plain step costs about 1.
 constexpr double hopeless = 0.25;
@@ -265,7 +265,7 @@ SignalSlopes SearchSetting::signal_slopes(std::span<const double> x, const std::
 }
 
 std::vector<ParameterGroup> SearchSetting::parameter_groups() const {
-  // A point inside the bounds; parameters at different shares of their ranges do not coincide by chance.
+  // A point inside the bounds; each parameter is at another share of its range, so that no edges coincide.
   std::vector<double> inside;
   for (const Variable& v : space.variables())
     inside.push_back(std::lerp(v.lower, v.upper, 0.3 + 0.4 * std::fmod(golden_ratio * static_cast<double>(inside.size()), 1.0)));

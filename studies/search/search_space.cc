@@ -201,8 +201,8 @@ double end_of_course(const DriveSearch& drive, const Signal& given) {
   return std::max(beyond * given.breakpoints().back(), least * drive.first_touch);
 }
 
-// Returns the point of a waveform family whose samples course(x) differ least from the samples `wanted` of the given waveform.
-// `about_hold` is the mean square of `wanted` about its hold level, the unit of a large difference.
+// Returns the point of a waveform family whose samples course(x) differ least from the samples `wanted` of a waveform. The
+// remaining difference is compared with `about_hold`, the mean square of `wanted` about its hold level.
 template <class Course>
 std::vector<double> nearest_point(const std::vector<Variable>& variables, const std::vector<std::vector<double>>& starts,
                                   const Course& course, const VectorXd& wanted, double about_hold) {

@@ -20,7 +20,8 @@ DriveWaveforms first_waveforms(const SearchSetting& setting) {
 }  // namespace
 
 ClosingWork closing_work(const SearchSetting& setting) {
-  // Work of a right-hand side without its quadrature points, and work that counts as 1, in units of one quadrature point.
+  // Work of a right-hand side besides its quadrature points (points_beside), and the work that counts as 1 (usual_points), in
+  // units of one quadrature point.
   constexpr double points_beside = 8, usual_points = 32;
   const Switch& model = setting.given.model;
   const double points = points_beside + static_cast<double>(model.quadrature().points());

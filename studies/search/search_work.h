@@ -30,8 +30,8 @@ struct ClosingWork {
 /// Number of devices that SIMD lanes simulate in the time of one.
 inline constexpr double usual_lanes = 8;
 
-/// Computing time of a closing in a search over devices, relative to that of a single closing (measured: 0.6 to 1.3). Computing
-/// time of a quasi-static closing relative to a quick one.
+/// Computing time of a closing in a search over devices, relative to that of a single closing (device_share; measured: 0.6 to
+/// 1.3). Computing time of a quasi-static closing, relative to that of a quick one (slow_approach).
 inline constexpr double device_share = 0.8, slow_approach = 3;
 
 /// Returns the number of closings that a default budget of `closings` is reduced to if each takes the work `counted`, more than

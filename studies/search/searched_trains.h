@@ -26,8 +26,8 @@ struct TrainRules {
   std::string_view first_duration = "duration_1_s";
 };
 
-/// Returns a waveform with the given levels and durations, then the hold level. The edges are as long as the voltage source's
-/// slew requires, and no duration is shorter than its edge.
+/// Returns a waveform with the given levels and durations, then the hold level. All edges have the duration `edge`, or a longer
+/// one that the slew limit of the voltage source requires. No duration of a level is shorter than an edge.
 [[nodiscard]] Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations,
                                 double edge);
 

@@ -37,8 +37,8 @@ class Verification {
   [[nodiscard]] double best_cost() const;
   /// True if the best candidate waveform is confirmed with a tighter integrator and with more modes.
   [[nodiscard]] bool confirmed() const { return best_ && best_->confidence == Confidence::confirmed; }
-  /// True if no further candidate with a cost of `cost` or more can be better than the best one, which is confirmed and costs
-  /// less.
+  /// True if the best candidate is confirmed and costs at most `cost`: no further candidate with this cost or more can be
+  /// better.
   [[nodiscard]] bool decided(double cost) const;
   /// True if the best candidate meets its goal with the scene's number of modes, but not with more modes.
   [[nodiscard]] bool belongs_to_modes() const { return best_ && best_->failed == Varied::modes; }
