@@ -1,5 +1,5 @@
-// Interface to the optimizer libraries NLopt and Ipopt and to the own CMA-ES: one run of one method from one start. The methods
-// evaluate a BudgetedObjective.
+// Interface to the optimizer libraries NLopt and Ipopt and to the CMA-ES of this folder: one run of one method from one start.
+// The methods evaluate a BudgetedObjective.
 #pragma once
 
 #include <cstdint>

@@ -50,7 +50,7 @@ void check(const Problem& problem, const OptimizerOptions& options) {
 // penalty, while the next start costs one evaluation.
 constexpr std::uint64_t infeasible_starts_skipped = 20;
 
-// Number of local searches in succession without a new evaluation after which the minimisation ends.
+// Number of local searches in succession that evaluate no new point, after which the minimisation ends.
 constexpr int idle_runs_allowed = 20;
 
 RunReport search_single_method(EvaluationRecord& record, const Method& method, const OptimizerOptions& options) {

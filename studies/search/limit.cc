@@ -404,8 +404,8 @@ class LimitStudy {
     return known_.emplace(share, least_time(result_.given, other)).first->second;
   }
 
-  // Simulates closings with the waveforms of the least time `path`. If `catches`, pulls after first contact (catches) are tried
-  // with several delays until a closing is bounce-free. Stores the best closing in the result.
+  // Simulates closings with the waveforms of the least-time solution `path`. If `catches`, pulls after first contact (catches)
+  // are tried with several delays until a closing is bounce-free. Stores the best closing in the result.
   void land(const LeastTime& path, bool catches) {
     if (path.status != Status::done) return;
     const AfterTouch after(result_.given, path, result_.options.actuator);

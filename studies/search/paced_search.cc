@@ -12,7 +12,7 @@ namespace softland {
 namespace {
 
 // Rounds (stages) of the search for slow waveforms, with the number of closings of each. Waveforms that last longer than the
-// bounces under the plain step get fewer closings.
+// bounces under the plain step get fewer closings, since each takes longer to compute.
 constexpr std::array pace_rounds{
     Round{.devices = 64, .closings = 10'000, .step = 0.15}, Round{.devices = 128, .closings = 10'000, .step = 0.1},
     Round{.devices = 256, .closings = 10'000, .step = 0.08}, Round{.devices = 256, .closings = 10'000, .step = 0.04}};

@@ -16,8 +16,8 @@ struct Catch {
 
 /// Returns the controls of a motion until first contact as tables of voltage [V] over time [s], by drive.
 [[nodiscard]] DriveWaveforms tables_of(const FirstTouchProblem& flight, const ControlledCourse& course);
-/// Returns the waveforms of the least time `found`, followed by a pull after first contact (catch), and then by the hold levels
-/// of the waveforms `held`; drives that `held` lacks end at 0 V.
+/// Returns the waveforms of the least-time solution `found`, followed by a pull after first contact (catch), and then by the
+/// hold levels of the waveforms `held`; drives that `held` lacks end at 0 V.
 [[nodiscard]] DriveWaveforms with_catch(const FirstTouchProblem& flight, const LeastTime& found, const Catch& pulled,
                                         const DriveWaveforms& held);
 /// Returns the signals of all drives: those of `searched`, for other drives those of `plain`, else those of the scene.

@@ -121,7 +121,7 @@ class HalvingSearch {
   }
 
  private:
-  // Adds a candidate waveform to the log if it was to be tried on all devices; otherwise only reports progress.
+  // Adds a candidate waveform to the log if all devices were to be simulated for its cost; otherwise only reports progress.
   void note(bool on_all, long index, const Point& x, double value) {
     if (on_all) return log_.note({.index = index, .value = value, .x = x});
     log_.tell();

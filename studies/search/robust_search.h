@@ -175,7 +175,7 @@ class RobustSearch {
   [[nodiscard]] std::vector<ChosenFrom> placed() const;
   [[nodiscard]] std::size_t good_enough() const;
   /// Searches with a per-device calibration, starting at the best waveform `winner` and at the nominal design's waveform
-  /// `drawing`. No rows if devices cannot be measured.
+  /// `drawing`. The result has no rows if devices cannot be measured.
   [[nodiscard]] CalibratedSearch in_measured_units(const ChosenFrom& winner, const DriveWaveforms& drawing);
   /// Returns the cost over the fresh devices (new to the search), with their measured scale factors, for closings over the
   /// short simulated time of a search.

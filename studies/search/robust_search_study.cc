@@ -379,7 +379,7 @@ class RobustSearchStudy {
       findings().conditions.push_back(fulfilled(result_->row_of_devices().judged.outcomes, condition));
   }
 
-  // Replaces the best waveform by the offered quicker one, if that is worse neither than the best waveform nor than the plain
+  // Makes the offered quicker waveform ("fast") the best one, if it is worse neither than the best waveform nor than the plain
   // step.
   void prefer_sooner(const DriveRobustness& step) {
     const double significant = first().given.scene.metrics.significant_rebound;

@@ -27,7 +27,7 @@ struct ClosingWork {
 
 /// Returns the reference u for the work of a closing, in right-hand sides: a default budget is reduced if closings take more.
 [[nodiscard]] double usual_work(Shaped drives);
-/// Number of devices that SIMD lanes simulate in the time of one.
+/// Number of devices that SIMD lanes simulate in the time of one device.
 inline constexpr double usual_lanes = 8;
 
 /// Computing time of a closing in a search over devices, relative to that of a single closing (device_share; measured: 0.6 to

@@ -47,15 +47,15 @@ void add_knots(DriveSearch& s, const PreparedScene& p, double t0) {
   if (s.drive == piezo_drive) {
     const double gap = p.scene.device.contact_gap();
     line([](double) { return 0; }, 1.5, 1);
-    // Start of a piezo: it pulls towards the contact, then brakes, and returns to its hold level.
+    // Starting waveform of a piezo: it pulls towards the contact, then brakes, and returns to its hold level.
     line([&](double part) { return lifting_voltage(p, (part < 0.5 ? -0.4 : 0.3) * gap); }, 2, 1);
   } else {
-    line([&](double part) { return (0.7 + 0.2 * part) * s.hold; }, 8, 0.2);   // start waveform: a slow ramp
-    line([&](double part) { return (0.75 + 0.2 * part) * s.hold; }, 3, 0.2);  // start waveform: a quicker ramp
-    // Start waveform: full pull, then coasting.
+    line([&](double part) { return (0.7 + 0.2 * part) * s.hold; }, 8, 0.2);   // starting waveform: a slow ramp
+    line([&](double part) { return (0.75 + 0.2 * part) * s.hold; }, 3, 0.2);  // starting waveform: a quicker ramp
+    // Starting waveform: full pull, then coasting.
     line([&](double part) { return part < 0.55 ? s.hold : 0.5 * s.hold; }, 1.5, 0.1);
     line([&](double part) { return part < 0.75 ? 0.3 * s.hold : 0.6 * s.hold; }, 1.8,
-         0.1);  // start waveform: low voltage, for a switch that other drives close
+         0.1);  // starting waveform: low voltage, for a switch that other drives close
   }
 }
 

@@ -50,20 +50,20 @@ void add_pulse(DriveSearch& s, const PreparedScene& p, double t0) {
   const double period = first_period(p);
   add_variables(s, p, t0);
   if (s.drive == piezo_drive) {
-    // Start of a piezo: it lifts the contact point by a share of the contact gap late in the motion, and returns at first
-    // contact.
+    // Starting waveform of a piezo: it lifts the contact point by a share of the contact gap late in the motion, and returns at
+    // first contact.
     const double gap = p.scene.device.contact_gap();
     for (const double brake : {0.3, 0.6}) {
       s.starts.push_back({inside(s, lifting_voltage(p, 0.1 * gap)), inside(s, lifting_voltage(p, brake * gap)), 0.9 * t0,
                           0.7 * t0, 0.05 * period});
     }
   } else if (s.brakes) {
-    // Start of an electrode on the far side (away from the contact), which brakes: it waits, pulls back in the second half of
-    // the motion, and returns to 0 V at first contact.
+    // Starting waveform of an electrode on the far side (away from the contact), which brakes: it waits, pulls back in the
+    // second half of the motion, and returns to 0 V at first contact.
     for (const double brake : {0.5, 0.8})
       s.starts.push_back({0, inside(s, brake * s.limits.max_voltage), 0.5 * t0, 0.5 * t0, 0.01 * period});
   } else {
-    // Start of an electrode: it pulls, coasts below the hold level, and then stays at its hold level.
+    // Starting waveform of an electrode: it pulls, coasts below the hold level, and then stays at its hold level.
     for (const double throwing : {1.0, 1.1}) {
       s.starts.push_back({inside(s, throwing * s.hold), inside(s, 0.6 * s.hold), 0.85 * t0, 0.5 * t0, 0.01 * period});
     }

@@ -32,13 +32,13 @@ struct TrainRules {
                                 double edge);
 
 void add_pulse(DriveSearch& s, const PreparedScene& p, double t0);
-/// Adds variables and starts of the waveform family catch: a strong initial pulse, a coast, and a level that presses the switch
-/// on its contact before the hold level.
+/// Adds variables and starting points of the waveform family catch: a strong initial pulse, a coast, and a level that presses
+/// the switch on its contact before the hold level.
 void add_catch(DriveSearch& s, const PreparedScene& p, double t0);
 void add_staircase(DriveSearch& s, const PreparedScene& p, double t0);
 void add_coast(DriveSearch& s, const PreparedScene& p, double t0);
-/// Adds variables and starts of a waveform family of pulses: the first accelerates the switch, all others press it on its
-/// contact.
+/// Adds variables and starting points of a waveform family of pulses: the first accelerates the switch, all others press it on
+/// its contact.
 void add_pulses(DriveSearch& s, const PreparedScene& p, double t0);
 [[nodiscard]] Waveform train_at(const DriveSearch& s, std::span<const double> x);
 [[nodiscard]] Parameters of_train(const DriveSearch& s, const Waveform& waveform);

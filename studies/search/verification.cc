@@ -15,8 +15,8 @@ namespace {
 
 constexpr double as_hard = 1e-3;  // smaller relative excesses of impact figures over the plain step's are ignored
 
-// Returns the figure of merit that a target is about, for a closing `m`; infinite if the closing has no such figure. For a sum
-// of targets, this is the weighted mean of the figures relative to the baseline.
+// Returns the figure of merit of a target for the closing `m`; infinite if the closing has no such figure. For a sum of
+// targets, this is the weighted mean of the figures relative to the baseline.
 double figure(const Aim& aim, const Metrics& m, const Metrics& baseline) {
   if (aim.has_own_objective() && !m.touched()) return std::numeric_limits<double>::infinity();
   const double value = aim.mean(m, baseline, [&](const TargetRow& row) {
