@@ -351,9 +351,11 @@ std::string checks_caption(const SearchRecord& search) {
 
 std::string families_caption(const SearchRecord& search) {
   std::string words;
-  for (const SearchedFamilyResult& one : search.families)
+  for (const SearchedFamilyResult& one : search.families) {
+    if (one.evaluations == 0) continue;  // the search was stopped before its turn
     words += fmt::format("{}{} {}", words.empty() ? "" : ", ", one.family,
                          std::isfinite(one.cost) ? plain_number(one.cost) : std::string("does not close"));
+  }
   return words;
 }
 

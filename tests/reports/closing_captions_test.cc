@@ -239,5 +239,12 @@ TEST(Change, DistinguishesBetterFromWorse) {
   EXPECT_EQ(change(1, std::nan(""), true).words, "");
 }
 
+TEST(FamiliesCaption, LeavesOutFamiliesThatAStoppedSearchDidNotReach) {
+  SearchRecord search;
+  search.families = {
+      {.family = "knots", .evaluations = 40, .cost = 0.5}, {.family = "ramp", .evaluations = 7}, {.family = "catch"}};
+  EXPECT_EQ(families_caption(search), "knots 0.5, ramp does not close");
+}
+
 }  // namespace
 }  // namespace softland::internal
