@@ -33,7 +33,7 @@ enum class Stream : std::uint64_t {
   offspring = 16,    ///< choice of the parents in an evolutionary search's population, and random changes of their child
   hop = 17,          ///< random start points of local searches near the best point of a search
   /// Seeds of the searches in every round of a comparison of waveform families.
-  race = 18,
+  tournament = 18,
   tuning = 19,             ///< parameters of simulated devices like the device under test, and searches for its waveform
   practice_device = 21,    ///< parameters of a practice device, a simulated device on which tuning is tried out
   practice_gain = 22,      ///< gain errors of the voltage sources of a practice device: constant, and per actuation

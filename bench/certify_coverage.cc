@@ -109,7 +109,7 @@ Scene judge(const Options& options, std::uint64_t index) {
   scene.outcome = Outcome::certified;
   const Metrics truth = metrics(best, p.scene.metrics);
   for (const Figure& figure : all_figures) {
-    if (!figure.is_told_by_two_runs() || figure.conditioning == Conditioning::open) continue;
+    if (!figure.error_is_from_two_runs() || figure.conditioning == Conditioning::open) continue;
     const double own = figure.value(plain.metrics), other = figure.value(truth), error = plain.errors[figure];
     if (!std::isfinite(own)) continue;
     Stated& stated = scene.stated[figure.key];

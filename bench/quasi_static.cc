@@ -87,7 +87,7 @@ int run(int count, char** arguments) {
     begin = processor_seconds();
     SearchBudget budget({});
     const auto found = search_at_pace(own, {.of_step = pace, .family = 0}, cost, aim, budget,
-                                      {.closings = std::lround(length * race_closings), .seed = seed, .jobs = 2});
+                                      {.closings = std::lround(length * tournament_closings), .seed = seed, .jobs = 2});
     if (!found) continue;
     print_row(fmt::format("{} searched", pace), fresh, aim, own, found->waveforms, of_step, budget.taken(),
               processor_seconds() - begin);

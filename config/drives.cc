@@ -258,7 +258,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
     if (in.is_given(file_key)) {
       FileRows rows = read_file_rows(in, drive, driver);
       if (rows.before && !in.is_given(before_key)) one.before = offset + *rows.before;
-      if (notes != nullptr && !rows.told.empty()) notes->push_back(std::move(rows.told));
+      if (notes != nullptr && !rows.note.empty()) notes->push_back(std::move(rows.note));
       waveform = std::move(rows.table);
     } else {
       waveform = read_waveform(in, {.drive = drive,

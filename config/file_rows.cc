@@ -91,7 +91,7 @@ FileRows from_zero(const SectionReader& in, const Trace& trace) {
     time.push_back(0);
     if (count == 0) {
       voltage.push_back(trace.values.front());
-      rows.told += fmt::format("; its first value holds from t = 0 to {}", engineering(*at_zero, "s", digits));
+      rows.note += fmt::format("; its first value holds from t = 0 to {}", engineering(*at_zero, "s", digits));
     } else {
       const double share = -trace.times[count - 1] / (trace.times[count] - trace.times[count - 1]);
       voltage.push_back(std::lerp(trace.values[count - 1], trace.values[count], share));
@@ -101,10 +101,10 @@ FileRows from_zero(const SectionReader& in, const Trace& trace) {
   voltage.insert(voltage.end(), trace.values.begin() + static_cast<std::ptrdiff_t>(count), trace.values.end());
   if (count == 0) return rows;
   if (in.is_given(before_key)) {
-    rows.told += fmt::format("; {} rows before t = 0 are skipped, because before is given", count);
+    rows.note += fmt::format("; {} rows before t = 0 are skipped, because before is given", count);
   } else {
     rows.before = level_before(in, trace, count);
-    rows.told += fmt::format("; before t = 0: {}, the mean of {} rows", engineering(*rows.before, "V", digits), count);
+    rows.note += fmt::format("; before t = 0: {}, the mean of {} rows", engineering(*rows.before, "V", digits), count);
   }
   return rows;
 }
@@ -125,7 +125,7 @@ void downsample(FileRows& rows, const SectionReader& driver) {
   Thinned made = thinned(table, time_constant, relative_error * (most - least));
   if (2 * made.table.time.size() > count) return;  // keep the rows if thinning saves less than half
   table = std::move(made.table);
-  rows.told += fmt::format("; thinned from {} to {} rows: after filtering with {} of {} they differ by less than {}", count,
+  rows.note += fmt::format("; thinned from {} to {} rows: after filtering with {} of {} they differ by less than {}", count,
                            table.time.size(), has_bandwidth ? "the bandwidth" : "a bandwidth",
                            engineering(1 / (2 * std::numbers::pi * time_constant), "Hz", 3), engineering(made.error, "V", 2));
 }
@@ -141,7 +141,7 @@ FileRows read_foreign(const SectionReader& in, std::string_view content, const s
   shift_times(trace.times, shift);
   FileRows rows = from_zero(in, trace);
   downsample(rows, driver);
-  rows.told = fmt::format("{}: {}{}", in.written(file_key), trace.told, rows.told);
+  rows.note = fmt::format("{}: {}{}", in.written(file_key), trace.note, rows.note);
   return rows;
 }
 

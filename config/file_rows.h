@@ -13,7 +13,7 @@ namespace softland::internal {
 struct FileRows {
   Table table;                        ///< recorded times and voltages from t = 0 on
   std::optional<double> before = {};  ///< mean voltage of the rows before t = 0, if the file has such rows [V]
-  std::string told = {};              ///< note on what was read from a file of another program, or empty
+  std::string note = {};              ///< note on what was read from a file of another program, or empty
 };
 
 /// Reads the file that [waveform.NAME] names. The numbers of a file written by softland (column time_s) are read bit for bit,

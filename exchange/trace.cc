@@ -25,7 +25,7 @@ constexpr double single_precision = 1.2e-7;
 
 std::string seconds(double time) { return engineering(time, "s", digits); }
 
-double volts_divisor(const Recording& recording, const Channel& channel, const ReadKeys& keys, bool any_unit, std::string& told) {
+double volts_divisor(const Recording& recording, const Channel& channel, const ReadKeys& keys, bool any_unit, std::string& note) {
   if (!keys.unit.empty()) {
     const std::optional<Unit> unit = unit_of(keys.unit);
     require(unit && (any_unit || unit->measure == Measure::voltage),
@@ -33,7 +33,7 @@ double volts_divisor(const Recording& recording, const Channel& channel, const R
     return unit->per_si;
   }
   if (channel.unit.empty()) {
-    if (!any_unit && !channel.is_state) told += "; the file names no unit: V is assumed";
+    if (!any_unit && !channel.is_state) note += "; the file names no unit: V is assumed";
     return 1;
   }
   require(channel.is_voltage || any_unit, [&] {
@@ -108,7 +108,7 @@ void require_no_repeats(const Recording& recording, const TimeAxis& axis) {
 }
 
 // Returns the times of the rows according to the user's keys and to the file.
-std::vector<double> resolved_times(const Recording& recording, const ReadKeys& keys, std::string& told) {
+std::vector<double> resolved_times(const Recording& recording, const ReadKeys& keys, std::string& note) {
   const std::size_t count = recording.rows();
   require(!recording.times.empty(), [&] {
     return fmt::format(
@@ -135,7 +135,7 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
     // rounding errors, so even times replace the times.
     constexpr double exact = 1e-3;
     if (axis.repeated == 0 && !axis.back && off <= exact * *recording.interval) return recording.times;
-    told += fmt::format("; times are rounded to {}: replaced by even times from the first one with the interval of the file",
+    note += fmt::format("; times are rounded to {}: replaced by even times from the first one with the interval of the file",
                         seconds(recording.last_digit));
     return even(recording.times.front(), *recording.interval, count);
   }
@@ -154,7 +154,7 @@ std::vector<double> resolved_times(const Recording& recording, const ReadKeys& k
 
 // Removes the rows without a finite value of the channel at both ends of the trace, and blank rows between others. Throws
 // InvalidInput for a value out of range between finite values.
-void drop_missing(const Recording& recording, const Channel& channel, Trace& trace, std::string& told) {
+void drop_missing(const Recording& recording, const Channel& channel, Trace& trace, std::string& note) {
   if (channel.missing.count == 0) return;
   std::size_t first = 0, last = trace.values.size();
   while (first < last && !std::isfinite(trace.values[first])) ++first;
@@ -175,7 +175,7 @@ void drop_missing(const Recording& recording, const Channel& channel, Trace& tra
     return fmt::format("{}:{}: column {}: \"{}\" must be finite, since it stands between finite numbers", recording.file,
                        channel.missing.line, channel.column, printable_line(channel.name));
   });
-  told +=
+  note +=
       fmt::format("; {} rows without a number are left out, the first in line {}", channel.missing.count, channel.missing.line);
   trace.times = std::move(kept.times);
   trace.values = std::move(kept.values);
@@ -185,21 +185,21 @@ void drop_missing(const Recording& recording, const Channel& channel, Trace& tra
 
 Trace trace_of(const Recording& recording, const ReadKeys& keys, const std::string& usual, bool any_unit) {
   const Channel& channel = channel_of(recording, keys, usual);
-  std::string told;
-  const double divisor = volts_divisor(recording, channel, keys, any_unit, told);
+  std::string note;
+  const double divisor = volts_divisor(recording, channel, keys, any_unit, note);
   if (recording.has_times && !recording.times_have_unit && keys.time_unit.empty())
-    told += "; the file names no unit of time: s is assumed";
-  Trace trace{.times = resolved_times(recording, keys, told), .values = channel.values, .told = {}};
+    note += "; the file names no unit of time: s is assumed";
+  Trace trace{.times = resolved_times(recording, keys, note), .values = channel.values, .note = {}};
   for (double& value : trace.values) value /= divisor;
-  drop_missing(recording, channel, trace, told);
-  for (const std::string& note : recording.notes) told += "; " + note;
-  for (const std::string& what : recording.left_out) told += "; left out: " + what;
+  drop_missing(recording, channel, trace, note);
+  for (const std::string& one : recording.notes) note += "; " + one;
+  for (const std::string& what : recording.left_out) note += "; left out: " + what;
   const double mean =
       trace.times.size() > 1 ? (trace.times.back() - trace.times.front()) / static_cast<double>(trace.times.size() - 1) : 0;
-  trace.told =
+  trace.note =
       fmt::format("{}, \"{}\": {} samples{}, from {} to {}{}", recording.format, printable_line(channel.name), trace.times.size(),
                   recording.is_breakpoints ? std::string() : fmt::format(", every {}", seconds(mean)),
-                  seconds(trace.times.front()), seconds(trace.times.back()), told);
+                  seconds(trace.times.front()), seconds(trace.times.back()), note);
   return trace;
 }
 

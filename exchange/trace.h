@@ -11,7 +11,7 @@ namespace softland {
 struct Trace {
   std::vector<double> times;   ///< times of the rows [s], not decreasing; two rows of equal time are a jump
   std::vector<double> values;  ///< values of the channel [V; if its unit is not one of voltage, in this unit]
-  std::string told;            ///< one line for the user: which channel and times are used, and what was left out
+  std::string note;            ///< one line for the user: which channel and times are used, and what was left out
 };
 
 /// Returns the values of the channel that channel_of() selects, over the times according to the file and to `keys`. Throws

@@ -167,7 +167,7 @@ std::optional<ClosedEquilibrium> closed_on_face(const Switch& model, std::span<c
 
 std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts) {
   if (!model.has_contact()) return std::nullopt;
-  if (model.device().lands_along_face()) return closed_on_face(model, volts);
+  if (model.device().closes_along_face()) return closed_on_face(model, volts);
   Statics statics(model);
   const double plane = model.contact_gap(), step = model.penetration_scale() / 16;
   if (model.rigid_contact() != nullptr) {

@@ -182,7 +182,7 @@ class ClosingRun {
   // other devices the gap is too small wherever it occurs.
   [[nodiscard]] bool is_over_electrode() {
     const Device& device = model_.device();
-    if (!device.lands_along_face() || device.structure.is_rigid()) return true;
+    if (!device.closes_along_face() || device.structure.is_rigid()) return true;
     GapField field = model_.workspace().field;
     const double* q = here().state.data();
     model_.quadrature().set_field(q, q + model_.modes(), field);

@@ -141,7 +141,7 @@ void check_gap_and_electrodes(const Device& d) {
     return fmt::format("gap.contact = {}: must be positive and below gap.electrode = {}", engineering(d.gap.contact, "m"),
                        engineering(d.gap.electrode, "m"));
   });
-  if (d.lands_on_dielectric() || d.landing() != nullptr) {
+  if (d.closes_on_dielectric() || d.landing() != nullptr) {
     const std::string wrong = why_no_landing(d);
     require(wrong.empty(), [&] { return fmt::format("gap.contact = {}: {}", engineering(d.gap.contact, "m"), wrong); });
   }
@@ -199,7 +199,7 @@ void check_place_of_contact(const Device& d, std::size_t i, const std::string& p
     return fmt::format("{}.gap: the contact rests {} from its plane; this distance must be positive", path,
                        engineering(gap, "m", 4));
   });
-  const bool may_reach = c.side == Side::far || c.along_face || (i == 0 && !d.lands_along_face() && d.lands_on_dielectric());
+  const bool may_reach = c.side == Side::far || c.along_face || (i == 0 && !d.closes_along_face() && d.closes_on_dielectric());
   require(may_reach || gap < d.gap.electrode + d.rest_offset(x), [&] {
     return fmt::format("{}.gap = {}: must be below gap.electrode = {}", path, engineering(gap, "m"),
                        engineering(d.gap.electrode, "m"));

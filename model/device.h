@@ -187,10 +187,10 @@ struct Device {
   [[nodiscard]] const Landing* landing() const;
   /// Returns the index of the contact along the face of the electrodes' dielectric; none when no dielectric has a landing.
   [[nodiscard]] std::optional<std::size_t> face_contact() const;
-  [[nodiscard]] bool lands_along_face() const { return face_contact().has_value(); }
+  [[nodiscard]] bool closes_along_face() const { return face_contact().has_value(); }
   /// Returns true when the moving part closes onto the dielectric of its electrodes, to within a hundredth of the electrode's
   /// gap.
-  [[nodiscard]] bool lands_on_dielectric() const { return lands_along_face() || gap.contact > 0.99 * gap.electrode; }
+  [[nodiscard]] bool closes_on_dielectric() const { return closes_along_face() || gap.contact > 0.99 * gap.electrode; }
   /// Returns the local gap between a closed switch and the face of its electrode, for the laws of gas films [m]. The gap is at
   /// least a hundredth of the rest gap, below which the film laws are continued by their tangent.
   [[nodiscard]] double closed_gap() const { return std::max(gap.electrode - gap.contact, gap.electrode / 100); }

@@ -180,7 +180,7 @@ std::vector<double> standing(const Switch& model, std::size_t drive, Bias bias) 
 class EquilibriumBranch {
  public:
   EquilibriumBranch(const Switch& model, std::size_t drive, Bias bias)
-      : statics_(model), drive_(drive), bias_(standing(model, drive, bias)), goes_in_steps_(model.device().lands_along_face()) {}
+      : statics_(model), drive_(drive), bias_(standing(model, drive, bias)), goes_in_steps_(model.device().closes_along_face()) {}
 
   // Returns the strength (Held::unknown) of the drive in the equilibrium at deflection s [m]; NaN without an equilibrium. The
   // search starts from the last equilibrium found, so call this operator in small steps of s.

@@ -82,7 +82,7 @@ void move_to(double t, const RecordedMotion::Motion& from, const RecordedMotion:
 std::string LinearizedClosing::refusal(const Switch& model) {
   if (model.film_states() > 0) return "the states of a compressible gas film have no derivatives here";
   if (model.contacts() > 1) return "the motion between several contacts has no derivatives here";
-  if (model.device().lands_along_face()) return "a landing along the face of a dielectric has no derivatives here";
+  if (model.device().closes_along_face()) return "a landing along the face of a dielectric has no derivatives here";
   if (model.has_contact() && is_own(model.contact()))
     return "a contact law of one's own has derivatives by differences only, which are not exact";
   return model.modes() > most_modes ? "a closing with so many modes has no derivatives here" : "";

@@ -42,7 +42,7 @@ void for_faces(const Device& device, const Eigen::ArrayXd& positions, Visit&& vi
 // sqrt(H / g) / pi from there. We choose six points in this distance; three cause an error of the release voltage of 7e-4,
 // measured on one bridge.
 double points_to_land(const Device& device) {
-  if (!device.lands_along_face()) return 0;
+  if (!device.closes_along_face()) return 0;
   constexpr double points = 6;
   return points * pi * std::sqrt(device.gap.electrode / (device.dielectric_depth() + device.landing()->begin()));
 }

@@ -134,7 +134,7 @@ class Switch {
   /// hundredth of d0 in any case.
   [[nodiscard]] double gap_floor() const {
     if (const Landing* landing = device_.landing(); landing != nullptr && landing->is_wall()) return -device_.gap.electrode;
-    return device_.lands_on_dielectric() ? -device_.dielectric_depth() / 2 : device_.gap.electrode / 100;
+    return device_.closes_on_dielectric() ? -device_.dielectric_depth() / 2 : device_.gap.electrode / 100;
   }
   /// Returns the interference at which the contact law carries the force that bends the beam by the contact gap [m]: the scale
   /// of penetration.

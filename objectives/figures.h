@@ -57,7 +57,7 @@ struct Figure {
   [[nodiscard]] constexpr bool is_count() const { return std::holds_alternative<int Metrics::*>(member); }
   [[nodiscard]] constexpr bool is_yes_or_no() const { return std::holds_alternative<bool Metrics::*>(member); }
   /// Returns true when the difference between two runs of different accuracy estimates the figure's error.
-  [[nodiscard]] constexpr bool is_told_by_two_runs() const {
+  [[nodiscard]] constexpr bool error_is_from_two_runs() const {
     return conditioning == Conditioning::first_touch || conditioning == Conditioning::high_rebound ||
            conditioning == Conditioning::every_touch || conditioning == Conditioning::open;
   }

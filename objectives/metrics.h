@@ -116,7 +116,7 @@ struct Metrics {
 
   [[nodiscard]] bool touched() const { return std::isfinite(initial_contact_time); }
   /// Returns true when the contact closed without a significant rebound.
-  [[nodiscard]] bool lands() const { return settled && bounce_count == 0; }
+  [[nodiscard]] bool is_bounce_free() const { return settled && bounce_count == 0; }
   /// Returns true when the closing was simulated to the end of its time window.
   [[nodiscard]] bool is_complete() const {
     return status == Status::done || status == Status::no_contact || status == Status::not_settled;

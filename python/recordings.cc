@@ -54,7 +54,7 @@ py::array_t<double> edges(const Column& times, const Column& volts, double thres
   require(times.ndim() == 1 && times.size() == volts.size() && times.size() > 0,
           "times and volts: must have the same shape (n,)");
   require(hysteresis >= 0 && merge >= 0, "hysteresis and merge: must be at least 0");
-  const Trace trace{.times = numbers(times), .values = numbers(volts), .told = {}};
+  const Trace trace{.times = numbers(times), .values = numbers(volts), .note = {}};
   for (std::size_t i = 0; i < trace.times.size(); ++i)
     require(std::isfinite(trace.times[i]) && std::isfinite(trace.values[i]) && (i == 0 || trace.times[i] >= trace.times[i - 1]),
             "times and volts: must be finite, and times must not decrease");

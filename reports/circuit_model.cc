@@ -399,7 +399,7 @@ std::string why_no_circuit(const Switch& model) {
   for (std::size_t c = 0; c < model.contacts(); ++c) can_push = can_push && only_pushes_law(c);
   add(model.contacts() > 1, "several contacts");
   add(model.device().touches_along_pad(), "a contact along its pad");
-  add(model.device().lands_along_face(), "a landing along the face of a dielectric");
+  add(model.device().closes_along_face(), "a landing along the face of a dielectric");
   add(!can_push, "a contact law other than linear or asperity-uniform");
   std::string all;
   for (std::size_t k = 0; k < reasons.size(); ++k) all += (k == 0 ? "" : k + 1 == reasons.size() ? " and " : ", ") + reasons[k];

@@ -309,7 +309,7 @@ void members(A& a, CalibrationError& known) {
 }
 
 template <class A>
-void members(A& a, RaceEntry& contender) {
+void members(A& a, TournamentEntry& contender) {
   a("measure", contender.measure);
   a("waveform", contender.waveform);
   a("closings", contender.closings);
@@ -343,7 +343,7 @@ void members(A& a, DevicesFindings& devices) {
   a("by_error_of_Vdp", devices.by_error);
   a.custom("hold_window_V", devices.windows, internal::windows_json, internal::read_windows);
   a("hold_window_devices", devices.windows.devices);
-  a("race", devices.race);
+  a("race", devices.tournament);
   a("conditions", devices.conditions);
   a("measured", devices.measured);
   a("next_command", devices.next_command);
@@ -414,9 +414,9 @@ void members_of_search(A& a, SearchRecord& search, ClosingRecord& closing) {
   a("devices", search.devices);
   a("seeds", search.seeds);
   if (search.devices) {
-    a.object("drawing", [&](auto& drawing) {
-      internal::figures_and_status(drawing, search.devices->drawing, search.devices->drawing_status, internal::every_figure);
-      drawing("goal_met", search.devices->drawing_goal_met);
+    a.object("drawing", [&](auto& nominal) {
+      internal::figures_and_status(nominal, search.devices->nominal, search.devices->nominal_status, internal::every_figure);
+      nominal("goal_met", search.devices->nominal_goal_met);
     });
   }
   a("limit", search.limit);

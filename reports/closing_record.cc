@@ -79,7 +79,7 @@ RunRecord run(const PreparedScene& p, const Closing& closing, const MetricsOptio
 // Returns the figures of merit by contact, if there are several contacts or if the beam touches the face of a dielectric.
 std::map<std::string, ContactFigures> contacts(const Device& device, const Closing& closing) {
   std::map<std::string, ContactFigures> all;
-  if (closing.contacts.empty() && device.lands_along_face())
+  if (closing.contacts.empty() && device.closes_along_face())
     all[std::string(face_name)] = {.gap = closing.trajectory.contact_gap, .figures = finite(FigureValues(closing.metrics))};
   for (std::size_t c = 0; c < closing.contacts.size(); ++c) {
     const ContactOutcome& own = closing.trajectory.contacts[c];

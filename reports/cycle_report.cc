@@ -30,7 +30,7 @@ using nlohmann::json;
 constexpr std::size_t most_of_course = 4000;  // largest number of points in a drawn curve of the gap over the cycles
 // Largest error of the piecewise linear waveforms in the report, as a share of the peak voltage.
 constexpr double line_tolerance = 1e-4;
-constexpr std::size_t told_cycles = 3;  // number of first cycles in the table of the report, which also has the last cycle
+constexpr std::size_t shown_cycles = 3;  // number of first cycles in the table of the report, which also has the last cycle
 constexpr std::size_t most_drawn_cycles = 200;
 
 CycleRecord::Devices devices_of(const CycledDrive& drive, double rate) {
@@ -165,7 +165,7 @@ ReportTable cycles_table(const CycleRecord::Drive& drive, const std::string& nam
   ReportTable table{.head = {name + ", cycle"}, .rows = {}};
   std::vector<std::size_t> shown;
   for (std::size_t n = 0; n < drive.cycles.size(); ++n) {
-    if (n < told_cycles || n + 1 == drive.cycles.size()) shown.push_back(n);
+    if (n < shown_cycles || n + 1 == drive.cycles.size()) shown.push_back(n);
   }
   for (const std::size_t n : shown) table.head.push_back(std::to_string(n + 1));
   for (const Row& row : rows) {
@@ -314,7 +314,7 @@ internal::Role role_of(const CycleRecord& r, const CycleRecord::Drive& d) {
 // Returns charts over the time of the cycles. The charts share their zoom and at first show the first cycles.
 internal::Picture picture_of(const CycleRecord& r) {
   using internal::Chart;
-  const double period = 1 / r.rate, first = period * static_cast<double>(std::min<std::uint64_t>(r.cycles, told_cycles));
+  const double period = 1 / r.rate, first = period * static_cast<double>(std::min<std::uint64_t>(r.cycles, shown_cycles));
   const std::size_t cycles = std::min<std::uint64_t>(r.cycles, most_drawn_cycles);
   const double end = period * static_cast<double>(cycles);
   internal::Picture drawn;

@@ -91,7 +91,7 @@ std::string yields_cell(const DevicesFindings::Row& row) {
 
 // Returns the name of a row in tables of waveforms: the choice (such as the fastest) and the file of the waveform.
 std::string shown_name(const DevicesFindings& d, const DevicesFindings::Row& row) {
-  if (row.name == for_the_drawing) return "nominal design: drawing.toml";
+  if (row.name == for_nominal_design) return "nominal design: drawing.toml";
   for (const DevicesFindings::Choice& one : d.choices) {
     if (one.row() == row.name) return fmt::format("{}: {}", one.name, one.file);
   }
@@ -209,10 +209,10 @@ std::string error_curve(const DevicesFindings& d) {
 
 }  // namespace
 
-std::string internal::drawing_prose(const DevicesFindings& d) {
-  const double closed = d.drawing[&Metrics::permanent_contact_time], height = d.drawing[&Metrics::major_bounce_height];
-  if (d.drawing_goal_met && std::isfinite(closed)) {
-    const DevicesFindings::Row* row = d.row(for_the_drawing);
+std::string internal::nominal_prose(const DevicesFindings& d) {
+  const double closed = d.nominal[&Metrics::permanent_contact_time], height = d.nominal[&Metrics::major_bounce_height];
+  if (d.nominal_goal_met && std::isfinite(closed)) {
+    const DevicesFindings::Row* row = d.row(for_nominal_design);
     const std::string on_devices =
         row == nullptr ? "" : fmt::format(" (95th percentile of the impact velocity on the devices: {})", speed_of(*row));
     return fmt::format("drawing.toml, searched for the nominal design alone, closes it bounce-free at {}{}.",
@@ -308,7 +308,7 @@ ReportTable choices_table(const DevicesFindings& d) {
   return devices_table(d, rows, ShownIn::terminal);
 }
 
-// Returns a table of all found waveforms, beginning with those among which the user can choose.
+// Returns a table of the plain step and all found waveforms, those that have files of their own first.
 ReportTable all_rows(const DevicesFindings& d) {
   std::vector<std::pair<std::string, const DevicesFindings::Row*>> rows;
   const auto add = [&](const DevicesFindings::Row* row) {
@@ -370,7 +370,7 @@ ReportSection internal::choices_section(const DevicesFindings& d) {
   if (d.rows.empty()) return section;
   section.parts.emplace_back(choices_table(d));
   std::string words = fmt::format("Process variation: {}.", d.spread);
-  for (const std::string& more : {path_prose(d), delay_prose(d), measuring_prose(d), drawing_prose(d)})
+  for (const std::string& more : {path_prose(d), delay_prose(d), measuring_prose(d), nominal_prose(d)})
     words += (more.empty() ? "" : " ") + more;
   section.parts.emplace_back(Paragraph{std::move(words)});
   if (!d.next_command.empty()) section.parts.emplace_back(ReportList{{d.next_command}});

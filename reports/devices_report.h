@@ -14,7 +14,7 @@ namespace softland {
 namespace internal {
 
 /// Describes how the nominal design closes with the waveform that was searched for it alone.
-[[nodiscard]] std::string drawing_prose(const DevicesFindings& devices);
+[[nodiscard]] std::string nominal_prose(const DevicesFindings& devices);
 /// Describes in a sentence how the devices close with the best waveform.
 [[nodiscard]] std::string devices_headline(const ClosingRecord& result);
 /// Returns the key numbers at the top of a page: shares and 95th percentiles of the devices, under the plain step and under the

@@ -8,7 +8,7 @@
 
 #include "base/choice.h"
 #include "base/require.h"
-#include "config/told_quantity.h"
+#include "config/quantity_argument.h"
 #include "document/quantity.h"
 #include "reports/closing_prose.h"
 #include "reports/closing_record.h"
@@ -57,7 +57,7 @@ std::vector<std::string> exported_drives(const PreparedScene& p, const std::stri
 
 double amplification(const Drive& drive, const Sampling& sampling) {
   if (!sampling.amplifier) return drive.amplifier.value_or(1);
-  const double factor = told_quantity(requested("amplifier"), *sampling.amplifier, dimension::none);
+  const double factor = quantity_argument(requested("amplifier"), *sampling.amplifier, dimension::none);
   require_field(factor > 0, "amplifier", "0", [] { return "must be above 0: volts at the switch per volt of the generator"; });
   return factor;
 }
@@ -109,7 +109,7 @@ std::string generator_text(const GeneratorFormat& format, const PreparedScene& p
   const double last = std::round(commanded.pieces().back().begin * rate);
   for (double k = 0; k <= last; ++k) samples.volts.push_back(commanded.voltage(k / rate) / factor);
   if (sampling.marker) {
-    const double at = std::round(told_quantity(requested("marker"), *sampling.marker, dimension::time) * rate);
+    const double at = std::round(quantity_argument(requested("marker"), *sampling.marker, dimension::time) * rate);
     require_field(at >= 0 && at <= last, "marker", *sampling.marker,
                   [&] { return fmt::format("must be within the waveform, 0 to {}", quantity(last / rate, "s")); });
     samples.marker = static_cast<std::size_t>(at);

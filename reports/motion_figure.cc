@@ -241,7 +241,7 @@ class MotionView {
 };
 
 // Returns the main instants of a run (such as first contact) and their names.
-std::vector<std::pair<double, std::string>> told_instants(const CurveRecord& curve) {
+std::vector<std::pair<double, std::string>> labelled_instants(const CurveRecord& curve) {
   std::vector<std::pair<double, std::string>> all{{curve.motion->time.front(), "at the start"}};
   const bool closes = curve.closed && !curve.closed->empty();
   if (closes && curve.closed->front().begin > 0) all.emplace_back(curve.closed->front().begin, "first touch");
@@ -257,7 +257,7 @@ std::string strobe(const MotionView& view, const CurveRecord& curve) {
   std::string shapes, names;
   double x = SideView::left - 40;
   std::size_t k = 0;
-  for (const auto& [time, name] : told_instants(curve)) {
+  for (const auto& [time, name] : labelled_instants(curve)) {
     const std::string style = fmt::format("instant-{}", ++k);
     const std::size_t row = row_of(*curve.motion, time);
     shapes += fmt::format("<path d=\"{}\" class=\"{}\"/>\n", view.shape(*curve.motion, row), style) +

@@ -14,7 +14,9 @@
 namespace softland {
 namespace {
 
-const RobustSearchResult& raced(const SearchReport& report) { return std::get<RobustSearchResult>(report.found.result); }
+const RobustSearchResult& searched_devices(const SearchReport& report) {
+  return std::get<RobustSearchResult>(report.found.result);
+}
 
 // Adds the files of a part of the report on a search: of its result, or of the simulated devices.
 template <class Part>
@@ -26,12 +28,12 @@ void add(std::vector<ReportFile<SearchReport>>& files, const Part& part, const P
 }
 
 PreparedScene calibrated(const SearchReport& report) {
-  return read_back(*raced(report).calibrated, "calibrated.toml", raced(report).drawing.scene);
+  return read_back(*searched_devices(report).calibrated, "calibrated.toml", searched_devices(report).nominal.scene);
 }
 
 PreparedScene choice(const SearchReport& report, std::size_t k) {
-  const DeviceChoice& one = raced(report).choices[k];
-  return read_back(*one.scene, one.name + ".toml", raced(report).drawing.scene);
+  const DeviceChoice& one = searched_devices(report).choices[k];
+  return read_back(*one.scene, one.name + ".toml", searched_devices(report).nominal.scene);
 }
 
 std::string scene_text(const PreparedScene& scene) { return scene.scene.file.text(); }
@@ -60,23 +62,25 @@ std::vector<ReportFile<SearchReport>> files_of(const SearchReport& report) {
   add<ClosingRecord>(files, report.result, [](const SearchReport& r) -> const ClosingRecord& { return r.result; });
   if (report.found.best().best_scene) {
     files.push_back({"best.toml", [](const SearchReport& r) { return scene_text(*r.found.best().best_scene); }});
-    files.push_back({"best.csv", [](const SearchReport& r) { return told_csv(*r.found.best().best_scene); }});
+    files.push_back({"best.csv", [](const SearchReport& r) { return commanded_csv(*r.found.best().best_scene); }});
   }
   const auto* devices = std::get_if<RobustSearchResult>(&report.found.result);
-  if (devices != nullptr && devices->drawing.best_scene) {
-    files.push_back({for_devices_files[0], [](const SearchReport& r) { return scene_text(*raced(r).drawing.best_scene); }});
-    files.push_back({for_devices_files[1], [](const SearchReport& r) { return told_csv(*raced(r).drawing.best_scene); }});
+  if (devices != nullptr && devices->nominal.best_scene) {
+    files.push_back(
+        {for_devices_files[0], [](const SearchReport& r) { return scene_text(*searched_devices(r).nominal.best_scene); }});
+    files.push_back(
+        {for_devices_files[1], [](const SearchReport& r) { return commanded_csv(*searched_devices(r).nominal.best_scene); }});
   }
   if (devices != nullptr && devices->calibrated) {
     files.push_back({for_devices_files[2], [](const SearchReport& r) { return scene_text(calibrated(r)); }});
-    files.push_back({for_devices_files[3], [](const SearchReport& r) { return told_csv(calibrated(r)); }});
+    files.push_back({for_devices_files[3], [](const SearchReport& r) { return commanded_csv(calibrated(r)); }});
   }
   if (devices != nullptr) {
     for (std::size_t k = 0; k < devices->choices.size(); ++k) {
       const std::string& name = devices->choices[k].name;
       if (!devices->choices[k].scene) continue;
       files.push_back({name + ".toml", [k](const SearchReport& r) { return scene_text(choice(r, k)); }});
-      files.push_back({name + ".csv", [k](const SearchReport& r) { return told_csv(choice(r, k)); }});
+      files.push_back({name + ".csv", [k](const SearchReport& r) { return commanded_csv(choice(r, k)); }});
     }
   }
   if (report.devices)

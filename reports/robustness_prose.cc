@@ -11,7 +11,7 @@
 namespace softland::internal {
 
 std::string shown_drive(const std::string& name) {
-  return name == for_the_devices ? "best.toml" : name == for_the_drawing ? "drawing.toml" : name;
+  return name == for_the_devices ? "best.toml" : name == for_nominal_design ? "drawing.toml" : name;
 }
 
 std::string spread_prose(const DeviceSpread& spread) {

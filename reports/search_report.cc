@@ -28,12 +28,13 @@ RobustnessOptions options_of(const PlannedSearch& search, std::uint64_t devices)
 }  // namespace
 
 void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Progress& progress) {
-  if (const auto* raced = std::get_if<RobustSearchResult>(&report.found.result); raced != nullptr && !raced->rows.empty()) {
-    report.devices.emplace(RobustnessReport{.nominal = raced->varied,
-                                            .found = raced->verdict,
+  if (const auto* searched = std::get_if<RobustSearchResult>(&report.found.result);
+      searched != nullptr && !searched->rows.empty()) {
+    report.devices.emplace(RobustnessReport{.nominal = searched->varied,
+                                            .found = searched->verdict,
                                             .options = options_of(search, search.for_devices->verdict),
                                             .command = command,
-                                            .windows = raced->findings.windows});
+                                            .windows = searched->findings.windows});
   }
   const auto* robust = std::get_if<RobustResult>(&report.found.result);
   if (robust == nullptr || !robust->verdict) return;
@@ -53,8 +54,8 @@ void add_result(SearchReport& report, const PlannedSearch& search, const std::fi
   } else if (const auto* robust = std::get_if<RobustResult>(&found)) {
     report.result = record_of(*robust, search.options, command);
   } else {
-    const auto& raced = std::get<RobustSearchResult>(found);
-    report.result = record_of(raced, search.options, next_command(raced, folder), command);
+    const auto& searched = std::get<RobustSearchResult>(found);
+    report.result = record_of(searched, search.options, next_command(searched, folder), command);
   }
 }
 

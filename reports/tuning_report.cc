@@ -327,7 +327,7 @@ const Closing* last_record(const std::vector<Closing>& closings) {
 
 }  // namespace
 
-bool TuningReport::lands() const {
+bool TuningReport::is_bounce_free() const {
   const Closing* const last = last_record(closings);
   return last != nullptr && last->shot.number == kept.number && is_bounce_free(last->record);
 }
@@ -437,7 +437,7 @@ void members(A& a, TuningReport& report) {
   a.object("best", [&](auto& best) {
     members(best, report.kept);
     best.derived("bounce_free", report.was_bounce_free(report.kept.number));
-    best.derived("landed_last", report.lands());
+    best.derived("landed_last", report.is_bounce_free());
   });
   a("next", report.next);
   a("belief", report.belief);

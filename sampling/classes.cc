@@ -103,7 +103,7 @@ Classes classes_of(std::span<const SpacePoint> points, std::size_t count, std::u
     if (one.square < best.square) best = std::move(one);
   }
   std::sort(best.classes.centres.begin(), best.classes.centres.end());
-  // Repeat the iteration with the centres in ascending order, so that the shares of the points are in the same order.
+  // Repeat the iteration with the centres in ascending order, so that each point's memberships are in the same order.
   return settle(points, std::move(best.classes.centres)).classes;
 }
 

@@ -131,7 +131,7 @@ class StudyStore::Implementation {
   void move_to_rescue(const std::string& what);
   void begin_writing();
   void end_log();
-  void throw_told();
+  void rethrow_failure();
   void let_go();
 
   std::optional<RowWriter> rows_;
@@ -283,7 +283,7 @@ void StudyStore::Implementation::move_to_rescue(const std::string& what) {
 
 // Throws errors of the writing thread that have occurred since the last call of this function; the writing thread then writes
 // the waiting rows again.
-void StudyStore::Implementation::throw_told() {
+void StudyStore::Implementation::rethrow_failure() {
   for (std::exception_ptr* told : {&failure_, &contradiction_}) {
     if (!*told) continue;
     for_writer_.notify_one();
@@ -306,7 +306,7 @@ void StudyStore::Implementation::add(StoredRow row) {
            std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds_per_commit));
   waiting_.push_back(std::move(row));
   if (waiting_.size() == 1 || waiting_.size() >= rows_per_commit) for_writer_.notify_one();
-  throw_told();
+  rethrow_failure();
 }
 
 void StudyStore::Implementation::flush() {
@@ -316,7 +316,7 @@ void StudyStore::Implementation::flush() {
   for_writer_.notify_one();
   for_callers_.wait(lock, [&] { return failure_ != nullptr || (waiting_.empty() && !committing_); });
   hurried_ = false;
-  throw_told();
+  rethrow_failure();
 }
 
 void StudyStore::Implementation::close() {

@@ -269,9 +269,9 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     }
     if (const std::optional<Dielectric>& dielectric = p.scene.device.electrodes[k].dielectric)
       add("", fmt::format("its dielectric adds {} to the gap of the field{}", given_quantity(dielectric->depth(), "m"),
-                          !p.scene.device.lands_on_dielectric() ? std::string()
-                          : p.scene.device.structure.is_rigid() ? "; the plate lands on it"
-                                                                : "; the beam lands on it"));
+                          !p.scene.device.closes_on_dielectric() ? std::string()
+                          : p.scene.device.structure.is_rigid()  ? "; the plate lands on it"
+                                                                 : "; the beam lands on it"));
   }
   if (p.scene.device.dispersion) {
     add("dispersion force", dispersion_prose(p, progress));
@@ -357,7 +357,7 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     const ClosedState state = closed_state(p, held);
     record.closed_state = state;
     add("closed state", closed_state_prose(state));
-    if (p.scene.device.lands_along_face()) add("", capacitance_prose(p));
+    if (p.scene.device.closes_along_face()) add("", capacitance_prose(p));
     const Hold hold = hold_of(p.model, held);
     if (const auto summits = hold.closed ? summits_at_hold(p.model, *hold.closed) : std::nullopt)
       add("contact", summits_prose(*summits));

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "config/told_quantity.h"
+#include "config/quantity_argument.h"
 
 namespace softland::verbs {
 namespace {
@@ -26,7 +26,7 @@ struct DeviceVerb : Usual, DeviceRequest {
 // Reads a quantity that may begin with a minus sign.
 double signed_quantity(const std::string& option, const std::string& text, const Dimension& due) {
   const bool is_negative = text.starts_with('-');
-  const double size = told_quantity(option, text.substr(is_negative ? 1 : 0), due);
+  const double size = quantity_argument(option, text.substr(is_negative ? 1 : 0), due);
   return is_negative ? -size : size;
 }
 
@@ -51,7 +51,7 @@ void read_model_part(const std::string& option, PracticeModel& model, const std:
   } else if (name == "gas" && !value.empty()) {
     model.gas = value;
   } else if (name == "stiffness" && !value.empty()) {
-    model.stiffness = told_quantity(option + " stiffness=", value, dimension::none);
+    model.stiffness = quantity_argument(option + " stiffness=", value, dimension::none);
     require_request(model.stiffness > 0, [&] { return fmt::format("{} stiffness={}: must be above 0", option, value); });
   } else if (name.find('.') != std::string::npos && !value.empty()) {
     model.set.push_back(part);
@@ -78,10 +78,10 @@ void options(Archive& a, DeviceVerb& r) {
       "errors", "Mapping[str, float | str] | None", "None",
       "standard deviations of the errors of the instruments, by name: edge_error [s], unseen [s], gain_error and shot_error");
   laboratory_options(a, r.laboratory);
-  a.as({.type = "float | str | None", .told = "_quantity({}, \"\")"})
+  a.as({.type = "float | str | None", .conversion = "_quantity({}, \"\")"})
       .parsed("drift", p.drift, read_drift, "SHARE/N",
               "relative change of all voltages in N shots, such as \"1 %/1000\" (default: none)", "drift", "float | str | None");
-  a.as({.told = "_quantity({}, \"s\")"})
+  a.as({.conversion = "_quantity({}, \"s\")"})
       .parsed("trigger-delay", p.trigger_delay, read_delay, "TIME",
               "delay of the records behind the drives; negative if records begin earlier, such as \"-1 us\" (default: 0 s)",
               "trigger_delay", "float | str | None");

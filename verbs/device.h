@@ -8,7 +8,7 @@
 namespace softland::verbs {
 
 struct DeviceRequest {
-  ToldErrors laboratory;
+  LaboratoryArguments laboratory;
   PracticeOptions practice;
 
   [[nodiscard]] PracticeOptions options(const SceneFile& file) const;

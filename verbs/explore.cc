@@ -48,14 +48,14 @@ void options(Archive& a, ExploreVerb& r) {
   const std::vector<std::string> studies = study_names();
   std::string listed_studies = in_words(studies, " or ");
   listed_studies.insert(listed_studies.find(','), " (default)");
-  a.as({.type = "Mapping[str, str] | Sequence[str]", .value = "", .told = "_settings({})", .is_positional = true})
+  a.as({.type = "Mapping[str, str] | Sequence[str]", .value = "", .conversion = "_settings({})", .is_positional = true})
       .repeated("vary", r.vary, "KEY=VALUES",
                 "key to vary and its values: KEY=LOW:HIGH:N (KEY=LOW:HIGH:N:log for equal ratios) or KEY=A,B,C. "
                 "KEY*KEY=VALUES multiplies several keys by one factor; KEY[2] is an element of a list. "
                 "If repeated, all combinations are computed");
   a.text("sample", r.sample, "SET",
          "draw N points from the box given by --vary KEY=LOW:HIGH: sobol:N or lhs:N (Latin hypercube)");
-  a.as({.type = "Sequence[str]", .value = "()", .told = "_text(\",\".join({}))"})
+  a.as({.type = "Sequence[str]", .value = "()", .conversion = "_text(\",\".join({}))"})
       .text("pareto", r.pareto, "FIGURES",
             "search the Pareto front of these figures, such as \"initial_contact_time,impact_velocity\", "
             "by NSGA-II in the box given by --vary KEY=LOW:HIGH. max:FIGURE maximises a figure; "
@@ -64,7 +64,7 @@ void options(Archive& a, ExploreVerb& r) {
                    "read the points from a CSV file, whose header holds keys with units, such as structure.length [um]");
   a.as({.type = fmt::format("Literal[\"{}\"]", fmt::join(studies, "\", \"")), .value = "\"simulate\""})
       .text("study", r.study, "NAME", "study to run at every point: " + listed_studies);
-  a.as({.keyword = "options", .type = "Mapping[str, Any] | None", .value = "None", .told = "_settings({})"})
+  a.as({.keyword = "options", .type = "Mapping[str, Any] | None", .value = "None", .conversion = "_settings({})"})
       .repeated(
           "option", r.options, "NAME=VALUE",
           "option of the verb of --study that explore itself does not have, such as \"impact-velocity=1 mm/s\"; may be repeated");
@@ -76,7 +76,7 @@ void options(Archive& a, ExploreVerb& r) {
   a.text("optimizer", r.optimizer, "NAME", "with --study optimize: --optimizer of optimize");
   a.as({.type = "int | None"})
       .text("budget", r.budget, "N", "with --study optimize: evaluations of every search (default: as in optimize)");
-  a.as({.type = "str | os.PathLike[str]", .value = "\"softland-out.sqlite\"", .told = "_path({})", .is_positional = true})
+  a.as({.type = "str | os.PathLike[str]", .value = "\"softland-out.sqlite\"", .conversion = "_path({})", .is_positional = true})
       .text("out", r.out, "FILE", "store for the rows (default: softland-out.sqlite); with --point, file for the scene");
   a.flag("resume", r.resume,
          "continue a store. Points that it holds are not computed again, "

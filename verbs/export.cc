@@ -44,23 +44,23 @@ void options(Archive& a, ExportVerb& r) {
             "spice-bench is a run of ngspice with the switch and its drives");
   a.object("waveforms", "Mapping[str, Waveform] | None", "None",
            "waveforms of some drives in volts, instead of those of the scene; own waveforms are written as tables");
-  a.as({.type = "float | str | None", .told = "_quantity({}, \"Hz\")"})
+  a.as({.type = "float | str | None", .conversion = "_quantity({}, \"Hz\")"})
       .text("sample-rate", r.sampling.rate, "RATE", "sample rate, such as \"27 MHz\" (default: that of [driver])");
-  a.as({.type = "int | None", .told = "_whole({})"})
+  a.as({.type = "int | None", .conversion = "_whole({})"})
       .text("bits", r.sampling.bits, "N",
             "round the samples to 2^N voltages between the limits of [driver] (default: the bits of [driver])");
-  a.as({.type = "float | str | None", .told = "_quantity({}, \"\")"})
+  a.as({.type = "float | str | None", .conversion = "_quantity({}, \"\")"})
       .text("amplifier", r.sampling.amplifier, "K",
             "gain of the amplifier between generator and switch (default: that of [driver]); "
             "a file for a generator holds the voltages at the switch divided by K");
-  a.as({.type = "float | str | None", .told = "_quantity({}, \"s\")"})
+  a.as({.type = "float | str | None", .conversion = "_quantity({}, \"s\")"})
       .text("marker", r.sampling.marker, "TIME", "time at which the sync output of the generator falls (keysight-arb)");
   a.text("drive", r.sampling.drive, "DRIVE", "export this drive only");
   a.as({.type = "Literal[\"told\", \"output\"]"})
       .text("signal", r.signal, "NAME",
             "signal to export: told (default) or output; told is the commanded voltage, as samples if the source takes samples, "
             "and output is the voltage that the source applies");
-  a.as({.type = "Mapping[str, float | str] | None", .value = "None", .told = "_pairs({}, \"=\")"})
+  a.as({.type = "Mapping[str, float | str] | None", .value = "None", .conversion = "_pairs({}, \"=\")"})
       .text("measured", r.measured, "WHAT",
             "scale the waveform for one device by its measurements, "
             "such as \"Vdp=54.2 V,frequency=10.2 kHz\" or only one of these. "

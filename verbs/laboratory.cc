@@ -2,7 +2,7 @@
 
 namespace softland::verbs {
 
-LaboratoryErrors ToldErrors::errors(const SceneFile& file) const {
+LaboratoryErrors LaboratoryArguments::errors(const SceneFile& file) const {
   LaboratoryErrors known = usual_errors(file);
   known.edge_error = edge_error.value_or(known.edge_error);
   known.unseen = unseen.value_or(known.unseen);

@@ -10,7 +10,7 @@
 namespace softland::verbs {
 
 /// Errors of laboratory instruments; an error that the user does not give has a default, which depends on the scene.
-struct ToldErrors {
+struct LaboratoryArguments {
   std::optional<double> edge_error = {}, unseen = {}, gain_error = {}, shot_error = {};
   /// Standard deviation of the delay between drive waveforms and contact records [s]; an option of `tune` only.
   std::optional<double> trigger_delay = {};
@@ -24,7 +24,7 @@ struct ToldErrors {
 };
 
 template <class Archive>
-void laboratory_options(Archive& a, ToldErrors& r) {
+void laboratory_options(Archive& a, LaboratoryArguments& r) {
   a.program().quantity("edge-error", r.edge_error, {dimension::time}, "TIME",
                        "standard deviation of the recorded time at which the contact closes or opens (default: 50 ns, "
                        "at most 1/200 of the period of the first mode)");

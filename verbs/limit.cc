@@ -66,7 +66,7 @@ Outcome run(const Setting& setting, const LimitRequest& request) {
   if (found->landing) {
     outcome.files.push_back({"best.toml", [found] { return found->landing->scene.scene.file.text(); },
                              "best.toml (run it with `softland simulate`)"});
-    outcome.files.push_back({"best.csv", [found] { return told_csv(found->landing->scene); }, "best.csv"});
+    outcome.files.push_back({"best.csv", [found] { return commanded_csv(found->landing->scene); }, "best.csv"});
   }
   const Status status = found->touch.status;
   outcome.ending = found->interrupted             ? Ending::interrupted

@@ -132,7 +132,8 @@ void options(Archive& a, OptimizeVerb& r) {
                         "or fewer if closings are slow to simulate (the first line of the output says so). "
                         "With --robust auto, N counts all closings; with one statistic, closings of devices (default: {})",
                         default_budget(Target::bounce, Shaped::electrode), default_budget(Target::bounce, Shaped::several),
-                        default_budget(Target::bounce, Shaped::piezo), targets_with_own_cost(), race_closings, default_closings));
+                        default_budget(Target::bounce, Shaped::piezo), targets_with_own_cost(), tournament_closings,
+                        default_closings));
   seed_option(a.as({.type = "int | None"}), r.seed, "the same result, whatever --jobs is");
   a.program().text("seeds", r.seeds, "N",
                    "search from N seeds, --seed and the following ones, as one study: the best result is reported, "

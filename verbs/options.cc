@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "config/told_quantity.h"
+#include "config/quantity_argument.h"
 
 namespace softland::verbs {
 
@@ -33,7 +33,7 @@ std::string spelled(const InvalidRequest& error, const Spelling& spelling) {
 }
 
 double OptionReader::quantity_of(const char* name, const std::string& text, const Wanted& wanted) const {
-  if (wanted.rule.empty()) return told_quantity(requested(name), text, wanted.dimension);
+  if (wanted.rule.empty()) return quantity_argument(requested(name), text, wanted.dimension);
   const auto rule = [&](bool ok) {
     require_request(ok, [&] { return fmt::format("{} {}: must be {}", requested(name), visible(text), wanted.rule); });
   };

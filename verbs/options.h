@@ -64,14 +64,14 @@ struct OptionRow {
   std::string note = {};     ///< text in front of the help `about` in Python, such as the unit of a number
   /// Python expression that converts the argument of the method to the option's texts, such as "_quantity(impact_velocity,
   /// 'm/s')".
-  std::string told = {};
+  std::string conversion = {};
   bool is_positional = false;
 };
 
 /// The form of an option in Python. Members that are not set are derived from the kind of the option. An option without a
 /// default value is required.
 struct InPython {
-  std::optional<std::string> keyword = {}, type = {}, value = {}, told = {};
+  std::optional<std::string> keyword = {}, type = {}, value = {}, conversion = {};
   bool is_positional = false;
 };
 
@@ -195,12 +195,12 @@ class OptionList {
 
  private:
   /// Adds an option; "{}" in the Python expression `told` stands for the keyword of the option.
-  void add(OptionRow row, const std::string& type, const std::string& value, const std::string& told) {
+  void add(OptionRow row, const std::string& type, const std::string& value, const std::string& conversion) {
     const auto [door, form] = std::exchange(next_, {});
     row.door = door;
     row.keyword = form.keyword.value_or(row.keyword.empty() ? keyword_of(row.name) : row.keyword);
     row.type = form.type.value_or(type), row.value = form.value.value_or(value);
-    row.told = fmt::format(fmt::runtime(form.told.value_or(told)), row.keyword);
+    row.conversion = fmt::format(fmt::runtime(form.conversion.value_or(conversion)), row.keyword);
     row.is_positional = row.is_positional || form.is_positional;
     all_.push_back(std::move(row));
   }

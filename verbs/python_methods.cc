@@ -66,8 +66,8 @@ std::string in_keywords(std::string words, const Study& study) {
   return words;
 }
 
-// Returns the Python expression by which the method of a verb starts the computation. A verb whose computation is written in
-// Python gets the texts of the options, and Python objects unchanged.
+// Returns the Python expression by which the method of a verb starts the computation. Its arguments are `told`, the
+// options as texts, and `objects`, the arguments that are Python objects (arrays, waveforms) and are handed on unchanged.
 std::string call(const Study& study, const std::string& told, const std::string& objects) {
   return study.ask && study.returns == std::string_view("Outcome")
              ? fmt::format("self._study(\"{}\", {}, progress{})", study.name, told, objects)
@@ -80,7 +80,7 @@ std::string method(const Study& study) {
     if (one.door == OptionRow::Door::program) continue;
     (one.is_positional ? positional : named) += parameter(one);
     explained += paragraph(one.keyword + ": " + one.note + in_keywords(one.about, study));
-    if (one.kind != OptionRow::Kind::object) told += fmt::format("            \"{}\": {},\n", one.name, one.told);
+    if (one.kind != OptionRow::Kind::object) told += fmt::format("            \"{}\": {},\n", one.name, one.conversion);
     if (one.kind == OptionRow::Kind::object || one.kind == OptionRow::Kind::further) objects += ", " + one.keyword;
   }
   std::string about = study.about;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "config/condition.h"
-#include "config/told_quantity.h"
+#include "config/quantity_argument.h"
 #include "reports/tuning_report.h"
 #include "verbs/study.h"
 
@@ -60,7 +60,7 @@ void read_touch(const std::string& option, const std::string& text, std::optiona
 
 void read_patience(const std::string& option, const std::string& text, std::chrono::milliseconds& patience) {
   constexpr double longest = 1e6;  // longest time that the option --timeout accepts [s]
-  const double seconds = told_quantity(option, text, dimension::time);
+  const double seconds = quantity_argument(option, text, dimension::time);
   require_request(seconds > 0 && seconds <= longest,
                   [&] { return fmt::format("{} {}: must be above 0 s and at most {} s", option, text, number_text(longest)); });
   patience = std::chrono::milliseconds(std::max<long>(1, std::lround(1000 * seconds)));
@@ -95,12 +95,12 @@ void options(Archive& a, TuneVerb& r) {
                   usual_closings, Tuner::enough_in_a_row));
   a.flag("resume", r.resume,
          "continue the tuning in the folder of --out; its closings are not fired again. Scene and options must be as before");
-  a.as({.type = "Sequence[str | os.PathLike[str]]", .told = "_paths({})"})
+  a.as({.type = "Sequence[str | os.PathLike[str]]", .conversion = "_paths({})"})
       .repeated("wafer", r.wafer, "FOLDER",
                 "result folder of a tuning of another device of the same wafer; "
                 "what these devices have in common is known before the first closing; may be repeated");
   a.choice("actuator", t.actuator, actuators, "drives that the tuning may shape");
-  a.as({.value = "\"\"", .told = "_text({})"})
+  a.as({.value = "\"\"", .conversion = "_text({})"})
       .parsed("constrain", t.touch, read_touch, "CONDITION",
               "condition on the time of first contact, such as \"initial_contact_time < 33 us\" or, "
               "relative to the plain step on the nominal design, \"initial_contact_time < 1.1 step\"",

@@ -25,7 +25,7 @@ struct TuneRequest {
   int closings = usual_closings;
   std::chrono::milliseconds patience = std::chrono::minutes(1);
   TunerOptions tuner{.jobs = one_per_core()};
-  ToldErrors laboratory;
+  LaboratoryArguments laboratory;
 
   /// Starts a tuning of this scene with the options of the request. Throws InvalidInput.
   [[nodiscard]] TuningSession session(const SceneFile& file) const;

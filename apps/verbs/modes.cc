@@ -17,7 +17,7 @@
 #include "base/shell_word.h"
 #include "base/split.h"
 #include "base/write_whole.h"
-#include "config/told_quantity.h"
+#include "config/quantity_argument.h"
 #include "config/units.h"
 #include "document/text.h"
 #include "exchange/mode_table.h"
@@ -46,7 +46,7 @@ int frequencies_of_scene(const Common& c) {
 /// Returns the value of a unit in SI units; `unit` is a symbol without a number, such as "mm".
 std::optional<double> unit_of(const char* option, const std::string& unit, const Dimension& due) {
   if (unit.empty()) return std::nullopt;
-  const double size = told_quantity(option, "1 " + unit, due);
+  const double size = quantity_argument(option, "1 " + unit, due);
   require(size > 0, [&] { return fmt::format("{} {}: must be greater than 0", option, unit); });
   return size;
 }
@@ -58,16 +58,17 @@ ModeKeys keys_of(const ModesRequest& r) {
   // The unit t is allowed because a model in mm, s and N has masses in tonnes.
   keys.mass_unit = r.mass_unit == "t" ? std::optional(1e3) : unit_of("--mass-unit", r.mass_unit, dimension::mass);
   if (!r.mass.empty()) {
-    keys.mass = told_quantity("--mass", r.mass, dimension::mass);
+    keys.mass = quantity_argument("--mass", r.mass, dimension::mass);
     require(*keys.mass > 0, [&] { return fmt::format("--mass {}: must be greater than 0", r.mass); });
   }
   if (!r.clamp.empty()) {
     const bool is_negative = r.clamp.starts_with('-');
-    keys.clamp = told_quantity("--clamp", is_negative ? r.clamp.substr(1) : r.clamp, dimension::length) * (is_negative ? -1 : 1);
+    keys.clamp =
+        quantity_argument("--clamp", is_negative ? r.clamp.substr(1) : r.clamp, dimension::length) * (is_negative ? -1 : 1);
   }
   if (!r.frequencies.empty()) {
     for (const std::string& one : split(r.frequencies, ','))
-      keys.frequencies.push_back(told_quantity("--frequencies", one, dimension::frequency));
+      keys.frequencies.push_back(quantity_argument("--frequencies", one, dimension::frequency));
   }
   return keys;
 }

@@ -38,7 +38,7 @@ void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
   if (has_landing(in.file())) return;  // check_landing() sets the contact gap to the rest distance of the dielectric's face
   if (!in.is_given("contact")) in.fail(R"(missing key 'contact' (a length such as "2 um"))");
   if (gap.contact <= gap.electrode && may_land(scene.device.structure, in.file())) {
-    in.require(!scene.device.lands_on_dielectric() || in.file().find({"dispersion"}) == nullptr, "contact",
+    in.require(!scene.device.closes_on_dielectric() || in.file().find({"dispersion"}) == nullptr, "contact",
                "a plate that lands on a dielectric must not have a dispersion force: remove [dispersion]");
     return;
   }

@@ -32,7 +32,7 @@ struct TakeOver {
 // kinks of the contact pressure, as one point of the beam after the other touches the face, so a tighter tolerance would not
 // help.
 TakeOver take_over(const Device& device) {
-  return device.lands_along_face() && device.gas ? TakeOver{.looks = 2, .tolerance = 1} : TakeOver{};
+  return device.closes_along_face() && device.gas ? TakeOver{.looks = 2, .tolerance = 1} : TakeOver{};
 }
 
 Knot at_rest(const ClosingParts& parts) {

@@ -39,7 +39,7 @@ namespace {
 // Returns the gap at which gas laws are evaluated: never less than a hundredth of the rest gap when the beam closes onto a
 // dielectric, where the gap vanishes.
 double gap_of_film(const Device& device, double gap) {
-  return device.lands_on_dielectric() ? std::max(gap, device.gap.electrode / 100) : gap;
+  return device.closes_on_dielectric() ? std::max(gap, device.gap.electrode / 100) : gap;
 }
 
 }  // namespace

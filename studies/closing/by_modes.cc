@@ -254,7 +254,7 @@ std::vector<std::string> mode_warnings(const PreparedScene& prepared) {
     const ByModes voltage = static_pull_in_by_modes(ladder, prepared.scene, k);
     if (voltage.is_worth_telling()) warnings.push_back(mode_warning(prepared.scene, k, voltage));
   }
-  if (prepared.scene.device.lands_along_face()) {
+  if (prepared.scene.device.closes_along_face()) {
     const ByModes capacitance = closed_capacitance_by_modes(ladder, hold_levels(prepared.signals()));
     const bool closes = std::isfinite(capacitance.values.begin()->second);
     if (closes && capacitance.is_worth_telling()) warnings.push_back(capacitance_warning(prepared.scene, capacitance));

@@ -184,7 +184,7 @@ void add_omissible_dielectrics(const PreparedScene& prepared, std::vector<Omissi
            .group = {.name = "over the electrical gap of the face", .value = e.dielectric->roughness / e.dielectric->depth()},
            .instead = 0.0});
     }
-    if (d.lands_on_dielectric()) continue;
+    if (d.closes_on_dielectric()) continue;
     list.push_back({.effect = "electrode." + e.name + ".dielectric",
                     .magnitude = {.name = "added to the gap of the field", .unit = "m", .value = e.dielectric->depth()},
                     .group = {.name = "over the rest gap", .value = e.dielectric->depth() / d.gap.electrode},

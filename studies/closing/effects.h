@@ -13,7 +13,7 @@
 
 namespace softland {
 
-/// The results of a scene's closing with one law in place of the scene's own law.
+/// The results of a scene's closing with one law of an effect (gas, contact, dispersion ...) in place of the scene's own law.
 struct Effect {
   std::string section;    ///< section of the scene that describes the law: "gas"
   std::string choice;     ///< name of the law; "none" if the physical effect is left out

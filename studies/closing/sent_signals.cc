@@ -30,7 +30,7 @@ SentSignals sent_signals(const PreparedScene& p, const std::vector<Waveform>& wa
   return all;
 }
 
-std::string told_csv(const PreparedScene& p) {
+std::string commanded_csv(const PreparedScene& p) {
   const SentSignals sent = sent_signals(p, p.waveforms());
   return csv(sent.signals, p.duration, sent.sample_rates);
 }

@@ -27,6 +27,6 @@ struct SentSignals {
                                        Sent sent = Sent::commanded);
 /// Returns the commanded signals of the scene's voltage sources as CSV. A scene with the same sources that plays this file has
 /// the same closing.
-[[nodiscard]] std::string told_csv(const PreparedScene& prepared);
+[[nodiscard]] std::string commanded_csv(const PreparedScene& prepared);
 
 }  // namespace softland

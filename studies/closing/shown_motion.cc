@@ -63,7 +63,7 @@ class MotionSampler final : public ClosingObserver {
 
 // Returns instants that the animation must contain: begin and end of touches (of the longest touches if there are many), and
 // begin, end and largest separation of the highest rebounds.
-std::vector<double> told_instants(const Closing& closing) {
+std::vector<double> labelled_instants(const Closing& closing) {
   const Trajectory& run = closing.trajectory;
   std::vector<Touch> touches = run.touches;
   for (const ContactOutcome& own : run.contacts) touches.insert(touches.end(), own.touches.begin(), own.touches.end());
@@ -167,7 +167,7 @@ std::optional<ShownMotion> shown_motion(const PreparedScene& prepared, const Clo
                           closing.quadrature.points_per_panel != prepared.quadrature.points_per_panel;
   const Switch model = is_refined ? Switch(prepared.scene.device, closing.quadrature) : prepared.model;
 
-  const std::vector<double> told = told_instants(closing);
+  const std::vector<double> told = labelled_instants(closing);
   std::vector<double> times = told;
   for (const TrajectoryPoint& point : run.points) times.push_back(point.time);
   times = sorted(std::move(times));

@@ -28,7 +28,7 @@ FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, do
   constexpr double lowest_separation = 1e-12;
   FigureValues d;
   for (const Figure& figure : all_figures) {
-    if (!figure.is_told_by_two_runs()) continue;
+    if (!figure.error_is_from_two_runs()) continue;
     const double own = figure.value(a);
     d[figure] = std::max(std::abs(own - figure.value(b)), shared * tolerance * std::abs(own));
   }

@@ -78,7 +78,7 @@ std::vector<Signal> cycled(const CycleWaveforms& waveforms, const CycleTimes& ti
   return all;
 }
 
-bool lands_alike(const CycleFigures& cycle, const CycleFigures& first, const CycleTolerances& tolerances) {
+bool closes_alike(const CycleFigures& cycle, const CycleFigures& first, const CycleTolerances& tolerances) {
   if (!cycle.closes || !cycle.opens) return false;
   const auto differs = [&](double own, double of_first, double least) {
     return !(std::abs(own - of_first) <= std::max(tolerances.share * of_first, least));
@@ -136,7 +136,7 @@ bool CycledSwitch::is_steady(const CycleTimes& times, const CycleTolerances& tol
     for (; judged < until && is_steady; ++judged) {
       const CycleFigures own = recorder.figures(judged, run);
       if (!first) first = own;
-      is_steady = lands_alike(own, *first, tolerances);
+      is_steady = closes_alike(own, *first, tolerances);
     }
     return !is_steady;
   };

@@ -46,7 +46,7 @@ struct CycleTolerances {
 };
 
 /// True if the switch closes and opens in `cycle` with the impact velocity and rebound height of the first cycle.
-[[nodiscard]] bool lands_alike(const CycleFigures& cycle, const CycleFigures& first, const CycleTolerances& tolerances);
+[[nodiscard]] bool closes_alike(const CycleFigures& cycle, const CycleFigures& first, const CycleTolerances& tolerances);
 
 /// The cycles of one switch: the nominal design of a scene, or one of the devices of its [spread].
 class CycledSwitch {

@@ -153,7 +153,7 @@ class PullInMeter {
   void learn_times();
   [[nodiscard]] double time_of(const Switch& model, double step) const;
 
-  struct ToldVolts {
+  struct TimedVoltage {
     // Closing time of the nominal device under a step to closing_step Vdp / `volts` [s]. `volts` is the voltage factor of a
     // device that takes this time under a step to closing_step Vdp.
     double time, volts;
@@ -162,7 +162,8 @@ class PullInMeter {
   const PreparedScene* nominal_;
   MeasuredQuantities quantities_;
   double precision_;
-  std::vector<ToldVolts> told_ = {};  // closing times of the nominal device under several voltage steps, in increasing order
+  std::vector<TimedVoltage> voltages_ =
+      {};  // closing times of the nominal device under several voltage steps, in increasing order
   std::size_t electrode_ = 0;
   double pull_in_ = Metrics::unset;
 };

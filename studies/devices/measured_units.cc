@@ -100,9 +100,10 @@ void PullInMeter::learn_times() {
   for (int n = 0; n <= steps; ++n) {
     const double volts = least + (most - least) * n / steps;
     const double time = time_of(nominal_->model, closing_step * pull_in_ / volts);
-    if (std::isfinite(time) && (told_.empty() || time > told_.back().time)) told_.push_back({.time = time, .volts = volts});
+    if (std::isfinite(time) && (voltages_.empty() || time > voltages_.back().time))
+      voltages_.push_back({.time = time, .volts = volts});
   }
-  require(told_.size() > 2, [&] {
+  require(voltages_.size() > 2, [&] {
     return fmt::format("{}: no step to {} Vdp closes the switch: its closing time cannot be measured",
                        nominal_->scene.file.name(), closing_step);
   });
@@ -115,9 +116,9 @@ double PullInMeter::closing_time() const {
 // Interpolates the voltage factor linearly over the closing times of the nominal device under several steps; extrapolates too.
 DeviceUnits PullInMeter::units_by_time(double time) const {
   if (!std::isfinite(time)) return {.volts = Metrics::unset, .time = 1};
-  const auto above = std::ranges::upper_bound(told_, time, {}, &ToldVolts::time);
-  const auto next = std::clamp<std::ptrdiff_t>(above - told_.begin(), 1, static_cast<std::ptrdiff_t>(told_.size()) - 1);
-  const ToldVolts &a = told_[static_cast<std::size_t>(next - 1)], &b = told_[static_cast<std::size_t>(next)];
+  const auto above = std::ranges::upper_bound(voltages_, time, {}, &TimedVoltage::time);
+  const auto next = std::clamp<std::ptrdiff_t>(above - voltages_.begin(), 1, static_cast<std::ptrdiff_t>(voltages_.size()) - 1);
+  const TimedVoltage &a = voltages_[static_cast<std::size_t>(next - 1)], &b = voltages_[static_cast<std::size_t>(next)];
   const double slope = (b.volts - a.volts) / (b.time - a.time), volts = a.volts + slope * (time - a.time);
   return {.volts = volts, .time = 1, .volts_by_time = slope / volts};
 }

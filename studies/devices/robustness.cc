@@ -179,7 +179,7 @@ EstimatedQuantile estimated_quantile(const std::vector<double>& sample, double p
   return {.value = sample_quantile(sample, probability), .interval = quantile_interval(sample, probability)};
 }
 
-bool is_bounce_free(const DeviceOutcome& o) { return o.closed() && o.metrics.lands(); }
+bool is_bounce_free(const DeviceOutcome& o) { return o.closed() && o.metrics.is_bounce_free(); }
 
 Yield yield_of(std::size_t devices, std::size_t all) {
   return {.devices = devices,

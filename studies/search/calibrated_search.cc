@@ -40,7 +40,7 @@ void DevicesRow::inherit(const DevicesRow& other) {
   const bool knows_more = includes(knowledge.pull_in_error, known.pull_in_error) &&
                           includes(knowledge.frequency_error, known.frequency_error) &&
                           includes(knowledge.piezo_error, known.piezo_error) && includes(knowledge.time_error, known.time_error);
-  if (!knows_more || !lands_better(other, *this)) return;
+  if (!knows_more || !has_better_yield(other, *this)) return;
   judged = other.judged;
   judged_whole = other.judged_whole;
   searched_for_it = false;
@@ -48,7 +48,7 @@ void DevicesRow::inherit(const DevicesRow& other) {
 
 bool DevicesRow::is_worth_measuring(const DevicesRow& uncalibrated) const {
   const double lands = judged.bounce_free.value, before = uncalibrated.judged.bounce_free.value;
-  if (std::max(lands, before) >= lands_half) return lands > before;
+  if (std::max(lands, before) >= half_is_bounce_free) return lands > before;
   const auto speed = [](const DevicesRow& row) {
     return quantile_95(row.judged.outcomes, key_of(&Metrics::largest_impact_velocity));
   };
@@ -71,7 +71,7 @@ void RobustSearch::measure_ahead() {
 // error. For a quicker switch, a precise measurement of pull-in voltage and period replaces the closing time.
 bool RobustSearch::tells_time() const { return meter_->closing_time() > least_times_of_error * usual_time_error; }
 
-CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const DriveWaveforms& drawing) {
+CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const DriveWaveforms& nominal) {
   const Calibration coarse{.pull_in_error = coarse_error};
   const Calibration both{.pull_in_error = coarse_error, .frequency_error = coarse_error};
   const Calibration fine{.pull_in_error = fine_error, .frequency_error = fine_error};
@@ -79,7 +79,7 @@ CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const
   if (!meter_) return {};
   CalibratedSearch all{.pull_in = meter_->pull_in(), .closing_time = meter_->closing_time()};
   const bool times = tells_time();
-  const auto found = searched_in(winner, drawing, std::array{coarse, times ? by_time : fine});
+  const auto found = searched_in(winner, nominal, std::array{coarse, times ? by_time : fine});
   if (!found[0]) return all;
   const auto row = [&](const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge, bool is_searched) {
     progress_.tell("verdict on devices that are measured", static_cast<double>(all.rows.size()) / most_rows);
@@ -92,7 +92,7 @@ CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const
   std::vector waveforms{*found[0]};
   if (found[1]) waveforms.push_back(*found[1]);
   all.by_error = judged_by_error(waveforms, winner.waveforms);
-  const bool time_wins = found[1] && times && lands_better(all.rows.back(), all.rows.front());
+  const bool time_wins = found[1] && times && has_better_yield(all.rows.back(), all.rows.front());
   all.best = time_wins ? all.rows.size() - 1 : 0;
   all.best_waveforms = time_wins ? *found[1] : *found[0];
   return all;
@@ -100,7 +100,7 @@ CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const
 
 // Searches a waveform for each of the two `calibrations`, in parallel. An element of the result is empty if the search with
 // this calibration found no waveform.
-std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
+std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& winner, const DriveWaveforms& nominal,
                                                              const std::array<Calibration, 2>& calibrations) {
   const auto family = std::ranges::find(names_, winner.family);
   const std::size_t k = family == names_.end() ? 0 : static_cast<std::size_t>(family - names_.begin());
@@ -113,18 +113,18 @@ std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& w
         const RobustCost cost(
             first(), aims_.tail,
             own_devices(first(), known[i], measured_devices, options_.seed, which_measured, options_.jobs, progress_));
-        RaceOptions own = race_options();
+        TournamentOptions own = tournament_options();
         own.memory = nullptr;  // no memory of evaluations: its keys do not contain the calibration
         own.progress = [&, i](double part) {
           parts[i] = part;
           progress_.tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
         };
-        const auto searched = [&](const RaceAims& aims) {
+        const auto searched = [&](const TournamentAims& aims) {
           if (settings_[k].space.quasi_static() != nullptr) return searched_at_pace(cost, aims, k, own);
-          return race_single_search(settings_[k], k, cost, aims, winner.bounce_free >= ranked_by_share,
-                                    {winner.waveforms, drawing}, *before_verdict_, own);
+          return tournament_of_one(settings_[k], k, cost, aims, winner.bounce_free >= ranked_by_share,
+                                   {winner.waveforms, nominal}, *before_verdict_, own);
         };
-        RaceResult found = searched(aims_);
+        TournamentResult found = searched(aims_);
         if (!found.contenders.empty() && is_harder_than_step(cost, found.contenders.front().waveforms))
           found = searched(no_harder());
         if (!found.contenders.empty()) all[i] = found.contenders.front().waveforms;
@@ -134,7 +134,8 @@ std::array<RobustSearch::Found, 2> RobustSearch::searched_in(const ChosenFrom& w
   return all;
 }
 
-RaceResult RobustSearch::searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family, RaceOptions options) {
+TournamentResult RobustSearch::searched_at_pace(const RobustCost& cost, const TournamentAims& aims, std::size_t family,
+                                                TournamentOptions options) {
   constexpr long shorter = 3;  // a search with a calibration simulates a third of the closings of a search without one
   RobustAim aim = tail_aim_;
   aim.free = free_;
@@ -142,7 +143,7 @@ RaceResult RobustSearch::searched_at_pace(const RobustCost& cost, const RaceAims
     if (one.figure.member != Figure::Member(&Metrics::initial_contact_time)) aim.conditions.push_back(one);
   }
   options.closings /= shorter;
-  RaceResult all;
+  TournamentResult all;
   if (auto found = search_at_pace(settings_[family], {.of_step = 1, .family = family}, cost, aim, *before_verdict_, options))
     all.contenders.push_back(*std::move(found));
   return all;
@@ -155,8 +156,8 @@ bool RobustSearch::is_harder_than_step(const RobustCost& cost, const DriveWavefo
   return !hold(at_most_step_, outcomes);
 }
 
-RaceAims RobustSearch::no_harder() const {
-  RaceAims aims = aims_;
+TournamentAims RobustSearch::no_harder() const {
+  TournamentAims aims = aims_;
   for (RobustAim* aim : {&aims.tail, &aims.share}) std::ranges::copy(at_most_step_, std::back_inserter(aim->conditions));
   return aims;
 }

@@ -40,7 +40,7 @@ StagedCost::Tried StagedCost::tried(const std::vector<double>& x, std::size_t mo
 }
 
 ChainEnd search_chain(const StagedCost& cost, const Chain& chain, SearchBudget& budget,
-                      const std::function<void(const std::vector<double>& x, double cost)>& told) {
+                      const std::function<void(const std::vector<double>& x, double cost)>& on_candidate) {
   ChainEnd best;
   std::deque<double> recent;
   std::atomic<bool> enough = false;
@@ -57,7 +57,9 @@ ChainEnd search_chain(const StagedCost& cost, const Chain& chain, SearchBudget& 
     if (tried.cost < best.cost) best.x = x, best.cost = tried.cost;
     budget.took(tried.closings);
     if (budget.over() || best.closings >= chain.closings) enough = true;
-    told(x, tried.cost);  // call `told` after the budget has counted the closings, since `told` may throw Interrupted
+    on_candidate(
+        x,
+        tried.cost);  // call `on_candidate` after the budget has counted the closings, since `on_candidate` may throw Interrupted
     if (budget.interrupted()) enough = true;
     return tried.cost;
   };

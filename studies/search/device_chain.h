@@ -67,8 +67,8 @@ struct ChainEnd {
   long closings = 0;
 };
 /// Searches a waveform by CMA-ES from one starting point until `chain.closings` closings are simulated or the budget is spent.
-/// Calls `told` with every candidate waveform, after the budget has counted the candidate's closings.
+/// Calls `on_candidate` with every candidate waveform, after the budget has counted the candidate's closings.
 [[nodiscard]] ChainEnd search_chain(const StagedCost& cost, const Chain& chain, SearchBudget& budget,
-                                    const std::function<void(const std::vector<double>& x, double cost)>& told);
+                                    const std::function<void(const std::vector<double>& x, double cost)>& on_candidate);
 
 }  // namespace softland

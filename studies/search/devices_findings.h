@@ -18,7 +18,7 @@ namespace softland {
 
 // Names of rows in the table of results. A row shows how one waveform performs on varied devices. The waveforms are the plain
 // step, those searched for the nominal design and for varied devices, and the best one with the electrode's step at t = 0.
-inline constexpr const char *plain_step_row = "plain step", *for_the_drawing = "for the drawing",
+inline constexpr const char *plain_step_row = "plain step", *for_nominal_design = "for the drawing",
                             *for_the_devices = "for the devices", *undelayed_row = "electrode at t = 0";
 /// Name of the choice whose waveform is in best.toml, among the waveforms offered to the user.
 inline constexpr const char* default_choice = "default";
@@ -42,7 +42,7 @@ struct CalibrationError {
 };
 
 /// One of the candidate waveforms among which the search over devices chooses the best one, as shown in reports.
-struct RaceEntry {
+struct TournamentEntry {
   /// Measure of risk that the search minimised, and waveform family: "cvar:0.9", "knots:6". The measure is "drawing" for a
   /// candidate of the search on the nominal device.
   std::string measure, waveform;
@@ -125,12 +125,12 @@ struct DevicesFindings {
   std::vector<CalibrationError> by_error;
   HoldWindows windows;  ///< range of the hold voltage in which devices stay closed, by electrode
   /// Candidates for the best waveform, the best first, with their results on the devices that serve to compare candidates.
-  std::vector<RaceEntry> race;
+  std::vector<TournamentEntry> tournament;
   /// Conditions of the search on figures, and the share of devices that fulfil them under the best waveform.
   std::vector<FulfilledCondition> conditions;
-  FigureValues drawing;  ///< figures of merit of the closing of the nominal device under its own best waveform
-  std::string drawing_status;
-  bool drawing_goal_met = false;
+  FigureValues nominal;  ///< figures of merit of the closing of the nominal device under its own best waveform
+  std::string nominal_status;
+  bool nominal_goal_met = false;
   std::string measured;  ///< name in the table of results of the waveform in calibrated.toml; empty without this file
   std::string next_command;
 

@@ -33,8 +33,8 @@ struct EvaluationValues {
   double cost = std::numeric_limits<double>::infinity();
   /// Guide cost of the candidate, which the first stage of a search minimises: see GuidedSearch.
   double guide = std::numeric_limits<double>::infinity();
-  bool lands = false;  ///< true if the switch closes without a significant rebound
-  long closings = 1;   ///< number of simulated closings of the evaluation
+  bool bounce_free = false;  ///< true if the switch closes without a significant rebound
+  long closings = 1;         ///< number of simulated closings of the evaluation
 };
 
 /// Interface of a memory of a search's evaluations, called from any thread. recall() and note() throw no exception; the class

@@ -36,7 +36,7 @@ ContentKey content_of(const EvaluationKey& key, const std::vector<double>& row) 
 
 EvaluationValues values_of(const StoredRow& row) {
   const double* figure = row.values.data() + row.values.size() - figures;
-  return {.cost = figure[0], .guide = figure[1], .lands = figure[2] == 1, .closings = static_cast<long>(figure[6])};
+  return {.cost = figure[0], .guide = figure[1], .bounce_free = figure[2] == 1, .closings = static_cast<long>(figure[6])};
 }
 
 StoredPlan evaluation_plan(const nlohmann::json& plan, std::int64_t points, std::uint64_t seed,
@@ -104,7 +104,7 @@ void EvaluationStore::add(const ContentKey& content, const EvaluationKey& key, s
     return key.devices > 0 && std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
   };
   row.values.insert(row.values.end(),
-                    {values.cost, values.guide, values.lands ? 1.0 : 0.0, or_none(static_cast<double>(key.devices)),
+                    {values.cost, values.guide, values.bounce_free ? 1.0 : 0.0, or_none(static_cast<double>(key.devices)),
                      or_none(key.hopeless), or_none(static_cast<double>(key.seed)), static_cast<double>(values.closings)});
   {
     const std::scoped_lock lock(mutex_);

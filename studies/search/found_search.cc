@@ -9,7 +9,7 @@ template <class Found>
 auto& best_of(Found& found) {
   if constexpr (requires { found.found; }) {
     return found.found;
-  } else if constexpr (requires { found.drawing; }) {
+  } else if constexpr (requires { found.nominal; }) {
     return found.best;
   } else {
     return found;
@@ -35,7 +35,7 @@ OptimizeResult& FoundSearch::best() {
 bool FoundSearch::is_success() const {
   const auto* devices = std::get_if<RobustSearchResult>(&result);
   // If the plain step is the result, it counts as a success only if it closes without a bounce.
-  const bool has_answer = devices == nullptr || !devices->best.plain_step_wins || devices->plain_step_lands();
+  const bool has_answer = devices == nullptr || !devices->best.plain_step_wins || devices->plain_step_is_bounce_free();
   return best().is_success() && has_answer;
 }
 

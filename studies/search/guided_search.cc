@@ -133,7 +133,7 @@ OptimizerResult GuidedSearch::run(Problem problem, OptimizerOptions options, Cos
   second.goes_on = options.goes_on || costs == Costs::both;
   second.smooth = costs == Costs::both;
   second.max_evaluations -= result.evaluations;
-  const bool lands = std::any_of(known_.begin(), known_.end(), [](const auto& one) { return one.second.lands; });
+  const bool lands = std::any_of(known_.begin(), known_.end(), [](const auto& one) { return one.second.bounce_free; });
   if (costs == Costs::guide || costs == Costs::target) second.max_evaluations = 0;
   if (costs == Costs::same) second.max_evaluations = lands || result.termination != Termination::evaluation_budget ? 0 : more;
   second.max_seconds = budget.seconds_left();

@@ -20,7 +20,7 @@ namespace softland {
 struct SearchCosts {
   double guide = std::numeric_limits<double>::infinity();
   double target = std::numeric_limits<double>::infinity();
-  bool lands = false;  ///< true if the switch closes without a significant rebound
+  bool bounce_free = false;  ///< true if the switch closes without a significant rebound
   /// Costs of a point without the penalty for violated conditions, and the excess g of each condition, which is fulfilled if g
   /// <= 0. Optimizers with constraints use these values.
   struct Apart {

@@ -318,7 +318,7 @@ class AfterTouch {
     all.insert(plain_.begin(), plain_.end());
     PreparedScene scene = read_back(with_waveforms(prepared_, all), "best.toml", prepared_);
     Closing closing = simulate(scene, false);
-    const auto soft = [](const Metrics& m) { return m.status == Status::done && m.lands(); };
+    const auto soft = [](const Metrics& m) { return m.status == Status::done && m.is_bounce_free(); };
     LimitLanding landing{.path = path_,
                          .catch_delay = pulled.begin,
                          .catch_time = pulled.end,

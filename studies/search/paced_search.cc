@@ -49,15 +49,15 @@ RobustAim aim_at(const Pace& pace, const RobustAim& aim) {
 }  // namespace
 
 std::optional<Contender> search_at_pace(const SearchSetting& given, const Pace& pace, const RobustCost& cost,
-                                        const RobustAim& aim, SearchBudget& budget, const RaceOptions& options) {
+                                        const RobustAim& aim, SearchBudget& budget, const TournamentOptions& options) {
   const RobustAim own = aim_at(pace, aim);
   SearchSetting setting = given;
   if (has_pace(aim)) setting.space = given.space.paced(allowed(pace, aim));
   const std::uint64_t identity =
-      random_bits(options.seed, Stream::race, first_of_paces + static_cast<std::uint64_t>(std::lround(16 * pace.of_step)));
+      random_bits(options.seed, Stream::tournament, first_of_paces + static_cast<std::uint64_t>(std::lround(16 * pace.of_step)));
   const StagedCost staged(setting, cost, own, options.memory, identity);
   const double length =
-      static_cast<double>(options.closings) / static_cast<double>(race_closings) / relative_duration(setting, aim);
+      static_cast<double>(options.closings) / static_cast<double>(tournament_closings) / relative_duration(setting, aim);
   Contender found{.family = pace.family, .measure = own.measure.text};
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& start : setting.space.starts()) {
@@ -71,7 +71,7 @@ std::optional<Contender> search_at_pace(const SearchSetting& given, const Pace& 
     return RoundShare{std::lround(length * round.closings), budget.seconds_left()};
   };
   const auto search = [&](Point& x, Turn turn, Chain chain, SearchBudget& part) {
-    chain.seed = random_bits(identity, Stream::race, turn.round);
+    chain.seed = random_bits(identity, Stream::tournament, turn.round);
     const ImprovingClosings taken = improve(x, staged, chain, part, [&] {
       if (options.progress) options.progress(0);
     });

@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "studies/search/race.h"
+#include "studies/search/family_tournament.h"
 
 namespace softland {
 
@@ -18,9 +18,10 @@ struct Pace {
 
 /// Searches the waveforms of a quasi-static approach at a pace. The waveform family of `setting` must be quasi-static. The aim
 /// of the whole search, `aim`, holds in its FreeTime the time until a steady force under the plain step. Returns nothing if no
-/// waveform of this pace is within the limits, or if the budget ends before a waveform was tried. RaceOptions::closings scales
-/// the number of closings of this search, as in race().
+/// waveform of this pace is within the limits, or if the budget ends before a waveform was tried. TournamentOptions::closings
+/// scales the number of closings of this search, as in family_tournament().
 [[nodiscard]] std::optional<Contender> search_at_pace(const SearchSetting& setting, const Pace& pace, const RobustCost& cost,
-                                                      const RobustAim& aim, SearchBudget& budget, const RaceOptions& options);
+                                                      const RobustAim& aim, SearchBudget& budget,
+                                                      const TournamentOptions& options);
 
 }  // namespace softland

@@ -132,7 +132,7 @@ class RobustCost {
   [[nodiscard]] const SampledDevice& device(std::size_t k) const { return ensemble_.devices[k]; }
   /// Simulates the closing of device k with its waveforms scaled by the factors `units`.
   [[nodiscard]] DeviceOutcome close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const;
-  /// Returns the cost s_k of a device; not_closed if the figure of the cost is not known.
+  /// Returns the cost s_k of a device; not_closed if the figure of merit that the cost rates is not known.
   [[nodiscard]] double score(const DeviceOutcome& outcome) const;
 
  private:

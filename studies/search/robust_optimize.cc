@@ -276,7 +276,7 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
   result.findings.is_told = cost.is_told(outcomes);
   out.better_than_baseline = result.findings.is_told && out.best_cost < out.baseline_cost;
   const Metrics& drawn = out.best->metrics;
-  out.goal_met = out.better_than_baseline && drawn.lands();
+  out.goal_met = out.better_than_baseline && drawn.is_bounce_free();
   const std::optional<Condition>& yield = robust.aim.measure.yield;
   if (yield) result.findings.yield = {.text = yield->text, .share = share_that_fulfils(outcomes, *yield), .holds = true};
   for (const Condition& condition : robust.aim.conditions) {

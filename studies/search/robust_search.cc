@@ -21,15 +21,15 @@ namespace softland {
 namespace {
 
 constexpr std::uint64_t devices_of_choice = 512, least_of_verdict = 500;
-constexpr std::size_t most_of_race = 3;  // largest number of candidates taken from a tournament by each of its two costs
+constexpr std::size_t most_of_tournament = 3;  // largest number of candidates taken from a tournament by each of its two costs
 // Latest permitted first contact, as a multiple of that under the plain step (95th percentiles). The second multiple is for
 // waveforms under which half the devices or more are bounce-free.
 constexpr double most_times = 5, most_times_of_landings = 7;
 constexpr double margin = 0.98;      // upper limit of a chosen waveform's figures, as a share of those under the plain step
 constexpr double more_open = 0.005;  // permitted excess of the share of devices that stay open over that under the plain step
 constexpr std::uint64_t which_searched = 0, which_chosen = 1;
-constexpr double least_of_race = 0.4,
-                 end_of_race = 0.75;  // lower and upper bound of the time for all searches, as shares of a time budget
+constexpr double least_of_tournament = 0.4,
+                 end_of_tournament = 0.75;  // lower and upper bound of the time for all searches, as shares of a time budget
 // `approaches`: waveform families added to the search if a drive can move the switch to its contact through stable equilibria.
 constexpr std::string_view quasi_static_short = "quasi-static:2", approaches = "+quasi-static+quasi-static:2";
 constexpr std::string_view usual_prefix = "usual_limit.";
@@ -54,12 +54,12 @@ bool is_about_time(const Condition& one) {
 
 // Returns the settings of the families to search, and the names of the families joined by +. Default families that the scene's
 // limits do not permit are left out.
-std::pair<std::vector<SearchSetting>, std::string> settings_of_race(const SceneFile& file, const OptimizeOptions& options,
-                                                                    const RobustSearchOptions& devices,
-                                                                    const Progress& progress) {
+std::pair<std::vector<SearchSetting>, std::string> settings_of_tournament(const SceneFile& file, const OptimizeOptions& options,
+                                                                          const RobustSearchOptions& devices,
+                                                                          const Progress& progress) {
   const bool chosen = !devices.families.empty();
   const std::string wanted =
-      chosen ? devices.families : std::string(raced_families) + std::string(devices.is_of_before ? "" : approaches);
+      chosen ? devices.families : std::string(tournament_families) + std::string(devices.is_of_before ? "" : approaches);
   const std::vector<std::string> names = families_of(wanted);
   if (chosen) return {search_settings(file, options.target, options.actuator, wanted, progress), wanted};
   std::vector<SearchSetting> settings{search_setting(file, options.target, options.actuator, names.front(), progress)};
@@ -93,16 +93,16 @@ double quantile(const std::vector<DeviceOutcome>& outcomes, std::string_view key
 double quantile_95(const std::vector<DeviceOutcome>& outcomes, std::string_view key) { return quantile(outcomes, key, 0.95); }
 
 void share_budget(OptimizeOptions& options, RobustSearchOptions& devices) {
-  constexpr long share_of_drawing = 5;  // the search on the nominal device gets a fifth of the budget
+  constexpr long share_of_nominal = 5;  // the search on the nominal device gets a fifth of the budget
   const long all = options.max_evaluations;
-  options.max_evaluations = std::max(1L, all / share_of_drawing);
+  options.max_evaluations = std::max(1L, all / share_of_nominal);
   devices.closings = all - options.max_evaluations;
   devices.are_a_budget = true;
 }
 
-bool lands_better(const DevicesRow& a, const DevicesRow& b) {
+bool has_better_yield(const DevicesRow& a, const DevicesRow& b) {
   const double lands = std::max(a.judged.bounce_free.value, b.judged.bounce_free.value);
-  if (lands >= lands_half) return a.judged.bounce_free.value > b.judged.bounce_free.value;
+  if (lands >= half_is_bounce_free) return a.judged.bounce_free.value > b.judged.bounce_free.value;
   return quantile_95(a.judged.outcomes, judged_figures[0]) < quantile_95(b.judged.outcomes, judged_figures[0]);
 }
 
@@ -122,7 +122,7 @@ bool RobustSearch::Bounds::keeps(const std::vector<DeviceOutcome>& own, double s
     if (value > margin * figures[i]) return false;
   }
   if (1 - share_of(own, closes) > open + more_open) return false;
-  const double times = share_of(own, is_bounce_free) >= lands_half ? most_times_of_landings : most_times;
+  const double times = share_of(own, is_bounce_free) >= half_is_bounce_free ? most_times_of_landings : most_times;
   return !in_time || !std::isfinite(first_touch) ||
          quantile_95(own, key_of(&Metrics::initial_contact_time)) <= times * first_touch;
 }
@@ -135,15 +135,15 @@ RobustSearch::RobustSearch(const SceneFile& file, const OptimizeOptions& options
       budget_({.seconds = options.max_seconds, .stop = options.stop}) {
   SceneFile varied = file;
   spread_assumed_ = assume_spread(varied);
-  auto [settings, families] = settings_of_race(varied, options, devices, progress_);
+  auto [settings, families] = settings_of_tournament(varied, options, devices, progress_);
   const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, families);
   settings_ = begins_gently(gentle, options.starts) ? gentle : std::move(settings);
   names_ = families_of(families);
   // Count the waveform families of the tournament: they come first in names_ and settings_, before the quasi-static families,
   // which search_paces() searches.
-  while (raced_ < names_.size() && !is_quasi_static(names_[raced_])) ++raced_;
-  if (raced_ < names_.size()) approach_ = settings_[raced_].space.quasi_static()->approach();
-  if (!devices_.is_of_before) usual_room_ = within_usual_room(raced_settings(), options_.actuator, names_);
+  while (tournament_families_ < names_.size() && !is_quasi_static(names_[tournament_families_])) ++tournament_families_;
+  if (tournament_families_ < names_.size()) approach_ = settings_[tournament_families_].space.quasi_static()->approach();
+  if (!devices_.is_of_before) usual_room_ = within_usual_room(tournament_settings(), options_.actuator, names_);
   known_ = measured_units(first().given, std::array{first().given.scene.calibration}, options.jobs, progress_).front();
   fit_budget();
 }
@@ -151,16 +151,16 @@ RobustSearch::RobustSearch(const SceneFile& file, const OptimizeOptions& options
 // Sets the number of closings of the tournament, and of fresh devices for the final evaluation. If closings are slow, both are
 // reduced, but not below a tournament that is meaningful and the devices that 95th percentiles need.
 void RobustSearch::fit_budget() {
-  race_length_ = devices_.closings;
+  tournament_length_ = devices_.closings;
   verdict_ = devices_.verdict;
   if (!devices_.counts_work) return;
   const double usual = usual_work(shaped_drives(first().given.scene.file, options_.actuator));
   const bool in_lanes = why_not_in_lanes(first().given.model).empty();
   const double work = closing_work(first()).counted * (in_lanes ? 1 : usual_lanes);
-  const auto shortest = static_cast<long>(std::ceil(least_length_of_race * static_cast<double>(race_closings)));
-  race_length_ = std::min(devices_.closings, std::max(within_work(devices_.closings, work, usual), shortest));
+  const auto shortest = static_cast<long>(std::ceil(least_length_of_tournament * static_cast<double>(tournament_closings)));
+  tournament_length_ = std::min(devices_.closings, std::max(within_work(devices_.closings, work, usual), shortest));
   if (!devices_.verdict_is_asked) {
-    const double share = static_cast<double>(race_length_) / static_cast<double>(devices_.closings);
+    const double share = static_cast<double>(tournament_length_) / static_cast<double>(devices_.closings);
     verdict_ = std::max(std::min(devices_.verdict, least_of_verdict),
                         static_cast<std::uint64_t>(share * static_cast<double>(devices_.verdict)));
   }
@@ -171,9 +171,9 @@ SearchEstimate RobustSearch::estimate(SearchEstimate nominal) const {
   constexpr double rows = 20;
   const double one = device_share * (approach_ ? slow_approach : 1) * nominal.closing;
   const double searches = usual_room_.empty() || devices_.are_a_budget ? 1.5 : 2.25;
-  const double closings = searches * static_cast<double>(race_length_) + rows * static_cast<double>(verdict_);
-  nominal.closings = race_length_;
-  nominal.has_fewer = nominal.has_fewer || race_length_ < devices_.closings;
+  const double closings = searches * static_cast<double>(tournament_length_) + rows * static_cast<double>(verdict_);
+  nominal.closings = tournament_length_;
+  nominal.has_fewer = nominal.has_fewer || tournament_length_ < devices_.closings;
   nominal.seconds = std::min(nominal.seconds + closings * one, options_.max_seconds * options_.jobs);
   return nominal;
 }
@@ -188,7 +188,7 @@ FamilyColumns RobustSearch::columns() const {
     for (std::string& name : all.families.back()) name.insert(0, usual_prefix);
   }
   for (std::vector<std::string>& own : all.families) {
-    for (std::string& name : own) name.insert(0, raced_prefix);
+    for (std::string& name : own) name.insert(0, tournament_prefix);
   }
   return all;
 }
@@ -197,15 +197,15 @@ void RobustSearch::run(std::size_t before, std::function<void()> looked, double 
   for (std::size_t k = 0; k < settings_.size(); ++k) settings_[k].family = before + k;
   for (std::size_t k = 0; k < usual_room_.size(); ++k) usual_room_[k].family = before + settings_.size() + k;
   looked_ = std::move(looked);
-  race_families(reserved);
+  run_family_tournament(reserved);
   choose();
   if (!budget_.given_up() && known_->calibration().is_empty()) measure_ahead();
 }
 
-void RobustSearch::race_families(double reserved) {
+void RobustSearch::run_family_tournament(double reserved) {
   progress_.tell("building devices", 0);
   cost_.emplace(first(), tail_aim_,
-                own_devices(first(), *known_, raced_devices, options_.seed, which_searched, options_.jobs, progress_));
+                own_devices(first(), *known_, tournament_devices, options_.seed, which_searched, options_.jobs, progress_));
   others_.emplace(first(), tail_aim_,
                   own_devices(first(), *known_, devices_of_choice, options_.seed, which_chosen, options_.jobs, progress_));
   const double begun = budget_.elapsed();
@@ -223,31 +223,32 @@ void RobustSearch::race_families(double reserved) {
   bounds_.emplace(closed(*others_, {}));
   progress_.tell("searching for the devices", 0);
   search_paces();
-  if (raced_ > 0) race_all();
+  if (tournament_families_ > 0) run_tournaments();
   progress_.throw_if_stopped();
 }
 
-std::vector<SearchSetting> RobustSearch::raced_settings() const {
-  return {settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(raced_)};
+std::vector<SearchSetting> RobustSearch::tournament_settings() const {
+  return {settings_.begin(), settings_.begin() + static_cast<std::ptrdiff_t>(tournament_families_)};
 }
 
 // Runs the tournament of waveform families. If the scene's voltage limits are wider than the default ones, a first tournament
 // runs within the default limits, and the second one begins with its best waveform.
-void RobustSearch::race_all() {
-  const std::vector<SearchSetting> raced = raced_settings();
-  RaceOptions own = race_options();
+void RobustSearch::run_tournaments() {
+  const std::vector<SearchSetting> settings = tournament_settings();
+  TournamentOptions own = tournament_options();
   if (!approach_) own.on_stage = [this](const Contender& leader) { look(leader); };
   std::vector<DriveWaveforms> begun;
   if (!usual_room_.empty()) {
-    RaceOptions first = own;
+    TournamentOptions first = own;
     SearchBudget half(*before_verdict_, before_verdict_->left(), before_verdict_->seconds_left() / 2);
     own.closings /= 2;
-    const bool has_room_for_both = static_cast<double>(own.closings) >= least_length_of_race * static_cast<double>(race_closings);
+    const bool has_room_for_both =
+        static_cast<double>(own.closings) >= least_length_of_tournament * static_cast<double>(tournament_closings);
     if (has_room_for_both && devices_.are_a_budget) first.closings /= 2;
-    race_in_usual_room_ = race(usual_room_, *cost_, aims_, has_room_for_both ? half : *before_verdict_, first);
-    if (!race_in_usual_room_.contenders.empty()) begun.push_back(race_in_usual_room_.contenders.front().waveforms);
+    tournament_in_usual_room_ = family_tournament(usual_room_, *cost_, aims_, has_room_for_both ? half : *before_verdict_, first);
+    if (!tournament_in_usual_room_.contenders.empty()) begun.push_back(tournament_in_usual_room_.contenders.front().waveforms);
   }
-  race_ = race(raced, *cost_, aims_, *before_verdict_, own, begun);
+  tournament_result_ = family_tournament(settings, *cost_, aims_, *before_verdict_, own, begun);
 }
 
 std::vector<Pace> RobustSearch::paces_of_search() const {
@@ -256,7 +257,7 @@ std::vector<Pace> RobustSearch::paces_of_search() const {
   const auto of = [this](double times) {
     constexpr double short_below = 0.75;
     const bool is_short = times < short_below && names_.back() == quasi_static_short;
-    return Pace{.of_step = times, .family = is_short ? settings_.size() - 1 : raced_};
+    return Pace{.of_step = times, .family = is_short ? settings_.size() - 1 : tournament_families_};
   };
   double allowed = std::numeric_limits<double>::infinity();
   for (const Condition& one : conditions_) {
@@ -268,21 +269,21 @@ std::vector<Pace> RobustSearch::paces_of_search() const {
 
 // Searches the quasi-static approach at each pace (permitted time until a steady contact), in parallel.
 void RobustSearch::search_paces() {
-  if (raced_ == settings_.size()) return;
+  if (tournament_families_ == settings_.size()) return;
   share_with_path_ = softland::share_with_path(first().given, *approach_, path_devices, options_.seed, options_.jobs, progress_);
   const std::vector<Pace> paces = paces_of_search();
   RobustAim aim = tail_aim_;
   aim.free = free_;
   std::vector<std::optional<Contender>> found(paces.size());
-  RaceOptions options = race_options();
+  TournamentOptions options = tournament_options();
   const double planned = static_cast<double>(paces.size()) * usual_closings_at_pace * static_cast<double>(options.closings) /
-                         static_cast<double>(race_closings);
+                         static_cast<double>(tournament_closings);
   SearchBudget budget(*before_verdict_, std::lround(planned));
   options.progress = [&](double) { progress_.tell("searching a quasi-static approach", budget.share_taken()); };
   run_tasks(
       paces.size(), options_.jobs,
       [&](std::size_t i) {
-        RaceOptions own = options;
+        TournamentOptions own = options;
         if (i == 0) own.on_stage = [this](const Contender& leader) { look(leader); };
         found[i] = search_at_pace(settings_[paces[i].family], paces[i], *cost_, aim, budget, own);
       },
@@ -320,17 +321,18 @@ bool RobustSearch::says_when_to_close() const {
 }
 
 // Limits the time of the searches so that the final evaluation, whose closings take `closing` [s] each, fits into the time
-// budget. The limit is between the shares least_of_race and end_of_race of the time budget, less `reserved` [s] for other work.
+// budget. The limit is between the shares least_of_tournament and end_of_tournament of the time budget, less `reserved` [s] for
+// other work.
 void RobustSearch::reserve_for_verdict(double closing, double reserved) {
   constexpr double rows =
       20;  // work per fresh device, in closings of a search: long closings, calibrated closings, closings for the Pareto front
   const double verdict = rows * static_cast<double>(verdict_) * closing, all = options_.max_seconds;
-  const double end = std::clamp(all - verdict, least_of_race * all, end_of_race * all) - reserved;
+  const double end = std::clamp(all - verdict, least_of_tournament * all, end_of_tournament * all) - reserved;
   before_verdict_.emplace(budget_, budget_.left(), end - budget_.elapsed());
 }
 
-RaceOptions RobustSearch::race_options() {
-  return {.closings = race_length_,
+TournamentOptions RobustSearch::tournament_options() {
+  return {.closings = tournament_length_,
           .are_a_budget = devices_.are_a_budget,
           .seed = options_.seed,
           .jobs = options_.jobs,
@@ -360,11 +362,11 @@ ChosenFrom RobustSearch::candidate_of(const Contender& contender) const {
 }
 
 // Adds the best candidates of a tournament by each of its two costs to `pool`, from which the best waveform is chosen later.
-void RobustSearch::take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool is_in_usual_room) const {
+void RobustSearch::take(std::vector<ChosenFrom>& pool, TournamentResult& found, bool is_in_usual_room) const {
   for (const bool by_share : {false, true}) {
-    std::ranges::stable_sort(raced.contenders, {}, [&](const Contender& r) { return by_share ? r.share : r.tail; });
-    for (std::size_t i = 0; i < std::min(most_of_race, raced.contenders.size()); ++i) {
-      ChosenFrom one = candidate_of(raced.contenders[i]);
+    std::ranges::stable_sort(found.contenders, {}, [&](const Contender& r) { return by_share ? r.share : r.tail; });
+    for (std::size_t i = 0; i < std::min(most_of_tournament, found.contenders.size()); ++i) {
+      ChosenFrom one = candidate_of(found.contenders[i]);
       one.is_in_usual_room = is_in_usual_room;
       if (std::ranges::none_of(pool, [&](const ChosenFrom& other) { return same_candidate(one, other); }))
         pool.push_back(std::move(one));
@@ -377,8 +379,8 @@ void RobustSearch::choose() {
   progress_.tell("choosing on other devices", 0);
   std::vector<ChosenFrom> pool;
   for (const Contender& one : paced_) pool.push_back(candidate_of(one));
-  take(pool, race_in_usual_room_, true);
-  take(pool, race_, false);
+  take(pool, tournament_in_usual_room_, true);
+  take(pool, tournament_result_, false);
   for (ChosenFrom& one : pool) place(std::move(one));
 }
 
@@ -443,7 +445,7 @@ RobustSearch::Placed RobustSearch::judged(ChosenFrom one, const std::vector<Devi
   one.impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity));
   one.median_touch = quantile(outcomes, key_of(&Metrics::initial_contact_time), 0.5);
   one.waited = waited(outcomes, free_.figure);
-  const bool lands = one.bounce_free >= lands_half && !approach_;
+  const bool lands = one.bounce_free >= half_is_bounce_free && !approach_;
   const double rank = lands ? -one.bounce_free : one.tail, significant = first().given.scene.metrics.significant_rebound;
   const bool in_time = !approach_ && !says_when_to_close();
   one.is_good_enough = bounds_->keeps(outcomes, significant, in_time) && hold(conditions_, outcomes);
@@ -452,7 +454,7 @@ RobustSearch::Placed RobustSearch::judged(ChosenFrom one, const std::vector<Devi
 
 bool RobustSearch::Placed::is_before(const Placed& other) const {
   if (candidate.is_good_enough != other.candidate.is_good_enough) return candidate.is_good_enough;
-  if (lands_half != other.lands_half) return lands_half;
+  if (half_is_bounce_free != other.half_is_bounce_free) return half_is_bounce_free;
   return rank < other.rank;
 }
 
@@ -483,7 +485,8 @@ std::vector<ChosenFrom> RobustSearch::placed() const {
   std::ranges::stable_sort(sorted, [](const Placed& a, const Placed& b) { return a.is_before(b); });
   // Prefer an earlier contact: without stable equilibria up to the contact, the switch accelerates from the pull-in point on,
   // so that slower waveforms are hardly softer.
-  if (!approach_ && free_.until > 0 && !sorted.empty() && sorted.front().candidate.is_good_enough && !sorted.front().lands_half)
+  if (!approach_ && free_.until > 0 && !sorted.empty() && sorted.front().candidate.is_good_enough &&
+      !sorted.front().half_is_bounce_free)
     prefer_sooner(sorted);
   // The cost of slow approaches is mostly due to the few devices without stable equilibria up to the contact. Prefer the lowest
   // 95th percentile of impact velocity among similar costs.

@@ -1,4 +1,4 @@
-// The search over varied devices: a tournament between waveform families by two measures (race.h), a choice among its
+// The search over varied devices: a tournament between waveform families by two measures (tournament.h), a choice among its
 // candidates on devices that the tournament has not used, and searches with a per-device calibration. The tournament does not
 // need the waveform of the nominal design.
 #pragma once
@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "studies/search/devices_findings.h"
+#include "studies/search/family_tournament.h"
 #include "studies/search/optimize.h"
 #include "studies/search/paced_search.h"
-#include "studies/search/race.h"
 #include "studies/search/robust_optimize.h"
 #include "studies/search/search_budget.h"
 
@@ -38,17 +38,17 @@ struct RobustSearchOptions {
   /// Number of fresh devices (new to the search) for the final evaluation of the waveforms.
   std::uint64_t verdict = 2000;
   bool verdict_is_asked = false;  ///< true: the user gave `verdict`; false: it may be reduced if closings are slow
-  /// Waveform families of the tournament. If empty: raced_families and the quasi-static approach, as far as the scene's limits
-  /// permit.
+  /// Waveform families of the tournament. If empty: tournament_families and the quasi-static approach, as far as the scene's
+  /// limits permit.
   std::string families = {};
   /// True: with the actuator pzt, the instant of the electrode's plain step is searched; false: the step is at t = 0.
   bool hold_step_is_chosen = true;
   /// True: searches as earlier versions did, for old requests: the time of first contact adds to the cost, and there is no
   /// quasi-static approach.
   bool is_of_before = false;
-  long closings = race_closings;  ///< total number of closings of the tournament of waveform families
-  bool are_a_budget = false;      ///< true: `closings` is an upper limit, even if many devices are bounce-free
-  bool counts_work = false;       ///< true: the tournament makes fewer closings if they are slow (search_work.h)
+  long closings = tournament_closings;  ///< total number of closings of the tournament of waveform families
+  bool are_a_budget = false;            ///< true: `closings` is an upper limit, even if many devices are bounce-free
+  bool counts_work = false;             ///< true: the tournament makes fewer closings if they are slow (search_work.h)
   /// Function that is called with every new best candidate waveform; from any thread, one call at a time.
   std::function<void(const Leading&)> on_leading = {};
 };
@@ -77,12 +77,13 @@ struct DevicesRow {
 inline constexpr double worth_choosing = 0.9;
 
 /// True if row `a` is better than row `b`: it has more bounce-free devices, or, if both have fewer than half, softer impacts.
-[[nodiscard]] bool lands_better(const DevicesRow& a, const DevicesRow& b);
+[[nodiscard]] bool has_better_yield(const DevicesRow& a, const DevicesRow& b);
 
 /// A candidate for the best waveform, with its performance on the devices on which the best one is chosen (not used by the
 /// searches).
 struct ChosenFrom {
-  std::string measure, family;  ///< measure of risk and waveform family of the search that found the candidate, as in RaceEntry
+  std::string measure,
+      family;  ///< measure of risk and waveform family of the search that found the candidate, as in TournamentEntry
   DriveWaveforms waveforms;
   std::map<std::string, double>
       parameters;  ///< waveform parameters by drive.name; empty for some waveforms of the search on the nominal device
@@ -102,7 +103,7 @@ struct ChosenFrom {
 };
 
 /// From this bounce-free share of devices on, waveforms are compared by their bounce-free shares; below it, by other figures.
-inline constexpr double lands_half = 0.5;
+inline constexpr double half_is_bounce_free = 0.5;
 
 /// Return a quantile over devices of the figure `key` of device_figures, and its 95th percentile.
 [[nodiscard]] double quantile(const std::vector<DeviceOutcome>& outcomes, std::string_view key, double probability);
@@ -122,7 +123,7 @@ struct CalibratedSearch {
 };
 
 /// Prefix of the parameters of searches over devices, in tables that also have those of the search on the nominal device.
-inline constexpr std::string_view raced_prefix = "devices.";
+inline constexpr std::string_view tournament_prefix = "devices.";
 
 class RobustSearch {
  public:
@@ -135,7 +136,7 @@ class RobustSearch {
   [[nodiscard]] const SearchSetting& first() const { return settings_.front(); }
   [[nodiscard]] const MeasuredUnits& known() const { return *known_; }
   [[nodiscard]] bool spread_assumed() const { return spread_assumed_; }
-  /// Returns the parameters of all waveform families; the names begin with raced_prefix.
+  /// Returns the parameters of all waveform families; the names begin with tournament_prefix.
   [[nodiscard]] FamilyColumns columns() const;
   /// Returns the budget of the whole search. Its time begins at the construction of this object; it counts closings of devices.
   [[nodiscard]] SearchBudget& budget() { return budget_; }
@@ -161,7 +162,7 @@ class RobustSearch {
   [[nodiscard]] const FreeTime& free() const { return free_; }
   /// Returns the cost over the devices on which the tournament tries waveforms.
   [[nodiscard]] const RobustCost& cost() const { return *cost_; }
-  [[nodiscard]] const RaceAims& aims() const { return aims_; }
+  [[nodiscard]] const TournamentAims& aims() const { return aims_; }
   [[nodiscard]] const std::vector<Condition>& conditions() const { return conditions_; }
   /// Evaluates a candidate on the devices on which the best one is chosen (not used by the searches), and adds it to placed().
   void place(ChosenFrom candidate);
@@ -176,7 +177,7 @@ class RobustSearch {
   [[nodiscard]] std::size_t good_enough() const;
   /// Searches with a per-device calibration, starting at the best waveform `winner` and at the nominal design's waveform
   /// `drawing`. The result has no rows if devices cannot be measured.
-  [[nodiscard]] CalibratedSearch in_measured_units(const ChosenFrom& winner, const DriveWaveforms& drawing);
+  [[nodiscard]] CalibratedSearch in_measured_units(const ChosenFrom& winner, const DriveWaveforms& nominal);
   /// Returns the cost over the fresh devices (new to the search), with their measured scale factors, for closings over the
   /// short simulated time of a search.
   [[nodiscard]] RobustCost verdict_devices(const MeasuredUnits& known);
@@ -201,7 +202,7 @@ class RobustSearch {
   };
   struct Placed {
     ChosenFrom candidate;
-    bool lands_half;
+    bool half_is_bounce_free;
     double rank;
 
     [[nodiscard]] bool is_before(const Placed& other) const;
@@ -210,16 +211,16 @@ class RobustSearch {
   using Found = std::optional<DriveWaveforms>;
 
   void fit_budget();
-  void race_families(double reserved);
-  [[nodiscard]] std::vector<SearchSetting> raced_settings() const;
-  void race_all();
-  void take(std::vector<ChosenFrom>& pool, RaceResult& raced, bool is_in_usual_room) const;
+  void run_family_tournament(double reserved);
+  [[nodiscard]] std::vector<SearchSetting> tournament_settings() const;
+  void run_tournaments();
+  void take(std::vector<ChosenFrom>& pool, TournamentResult& found, bool is_in_usual_room) const;
   [[nodiscard]] std::vector<Pace> paces_of_search() const;
   void search_paces();
   void make_aims(const std::vector<DeviceOutcome>& step, const FreeTime& free);
   [[nodiscard]] bool says_when_to_close() const;
   void reserve_for_verdict(double closing, double reserved);
-  [[nodiscard]] RaceOptions race_options();
+  [[nodiscard]] TournamentOptions tournament_options();
   void choose();
   void look(const Contender& contender);
   [[nodiscard]] std::vector<DeviceOutcome> on_others(const DriveWaveforms& waveforms);
@@ -227,12 +228,12 @@ class RobustSearch {
   [[nodiscard]] ChosenFrom candidate_of(const Contender& contender) const;
   void measure_ahead();
   [[nodiscard]] bool tells_time() const;
-  [[nodiscard]] std::array<Found, 2> searched_in(const ChosenFrom& winner, const DriveWaveforms& drawing,
+  [[nodiscard]] std::array<Found, 2> searched_in(const ChosenFrom& winner, const DriveWaveforms& nominal,
                                                  const std::array<Calibration, 2>& calibrations);
-  [[nodiscard]] RaceResult searched_at_pace(const RobustCost& cost, const RaceAims& aims, std::size_t family,
-                                            RaceOptions options);
+  [[nodiscard]] TournamentResult searched_at_pace(const RobustCost& cost, const TournamentAims& aims, std::size_t family,
+                                                  TournamentOptions options);
   [[nodiscard]] bool is_harder_than_step(const RobustCost& cost, const DriveWaveforms& waveforms) const;
-  [[nodiscard]] RaceAims no_harder() const;
+  [[nodiscard]] TournamentAims no_harder() const;
   [[nodiscard]] DevicesRow row_of(const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge,
                                   bool searched_for_it);
   [[nodiscard]] std::vector<CalibrationError> judged_by_error(const std::vector<DriveWaveforms>& waveforms,
@@ -245,7 +246,7 @@ class RobustSearch {
   SearchBudget budget_;
   bool spread_assumed_ = false;
   std::vector<SearchSetting> settings_;
-  std::size_t raced_ = 0;  // number of waveform families in the tournament: the first of settings_
+  std::size_t tournament_families_ = 0;  // number of waveform families in the tournament: the first of settings_
   // Settings of the first tournament, within the default voltage limits; empty unless the scene's limits are wider.
   std::vector<SearchSetting> usual_room_;
   std::vector<std::string> names_;  // names of the waveform families
@@ -253,17 +254,17 @@ class RobustSearch {
   double share_with_path_ = Metrics::unset;
   std::optional<MeasuredUnits> known_;
   std::optional<SearchBudget> before_verdict_;  // part of the budget for all work before the final evaluation
-  long race_length_ = race_closings;
+  long tournament_length_ = tournament_closings;
   std::uint64_t verdict_ = RobustSearchOptions{}.verdict;
   std::vector<Condition> conditions_;  // the user's conditions, with numbers for limits relative to the plain step
   RobustAim tail_aim_;
-  RaceAims aims_;
+  TournamentAims aims_;
   std::vector<Condition> at_most_step_;  // conditions: each of judged_figures must be at most that under the plain step
   // Costs over the devices on which the tournament tries waveforms, and over those on which the best candidate is chosen.
   std::optional<RobustCost> cost_, others_;
   FreeTime free_;
   std::vector<Contender> paced_;
-  RaceResult race_, race_in_usual_room_;
+  TournamentResult tournament_result_, tournament_in_usual_room_;
   std::optional<Bounds> bounds_;
   // Outcomes under the plain step of the devices on which the best candidate is chosen.
   std::vector<DeviceOutcome> step_on_others_;

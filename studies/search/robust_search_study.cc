@@ -22,7 +22,7 @@ constexpr std::size_t scouted_on = 16, ranked_on = 64;
 constexpr std::size_t kept_of_scouted = 24;  // candidates kept after `scouted_on` devices, by each of two costs
 constexpr std::size_t most_of_ranked = 2;    // candidates kept after `ranked_on` devices, by each of two costs
 constexpr std::size_t most_judged = 3;       // largest number of candidates tried on fresh devices
-constexpr double end_of_drawing = 0.3;       // end of the search on the nominal device, as a share of a time budget
+constexpr double end_of_nominal = 0.3;       // end of the search on the nominal device, as a share of a time budget
 
 constexpr const char *fast_row = "fast", *soft_row = "soft";
 // Largest time until a steady contact under the waveforms "fast", "default" and "soft" that are offered to the user, as a
@@ -41,10 +41,10 @@ class RobustSearchStudy {
         searched_(file, options, devices, progress_.report) {}
 
   RobustSearchResult run() {
-    OptimizeResult drawing = searched_for_drawing();
-    result_.emplace(RobustSearchResult{.varied = first().given, .drawing = drawing, .best = std::move(drawing)});
+    OptimizeResult nominal = searched_for_nominal();
+    result_.emplace(RobustSearchResult{.varied = first().given, .nominal = nominal, .best = std::move(nominal)});
     try {
-      if (result_->drawing.best_scene && !progress_.stopped()) {
+      if (result_->nominal.best_scene && !progress_.stopped()) {
         choose_of_all();
         judge();
       }
@@ -62,15 +62,15 @@ class RobustSearchStudy {
   [[nodiscard]] const SearchSetting& first() const { return searched_.first(); }
   // Reports the progress of the study, but not while the search on the nominal device runs, which reports itself.
   void tell(std::string_view what, double part) const {
-    if (options_.on_preparation && !searches_drawing_) options_.on_preparation(what, part);
+    if (options_.on_preparation && !searches_nominal_) options_.on_preparation(what, part);
   }
 
-  OptimizeResult searched_for_drawing() {
-    drawing_options_ = options_of_drawing();
+  OptimizeResult searched_for_nominal() {
+    nominal_options_ = options_of_nominal();
     try {
-      OptimizeResult drawing = optimize(file_, drawing_options_);
-      searches_drawing_ = false;
-      return drawing;
+      OptimizeResult nominal = optimize(file_, nominal_options_);
+      searches_nominal_ = false;
+      return nominal;
     } catch (...) {
       searched_.give_up();
       throw;
@@ -79,22 +79,22 @@ class RobustSearchStudy {
 
   // Returns the options of the search on the nominal device. This search keeps candidate waveforms, which are then ranked on
   // varied devices; its on_start also passes on the parameters of the search over devices.
-  OptimizeOptions options_of_drawing() {
+  OptimizeOptions options_of_nominal() {
     OptimizeOptions own = options_;
     own.keep_tried = true;
-    if (std::isfinite(own.max_seconds)) own.max_seconds = searched_.budget().seconds_left(end_of_drawing);
+    if (std::isfinite(own.max_seconds)) own.max_seconds = searched_.budget().seconds_left(end_of_nominal);
     own.max_seconds = std::max(own.max_seconds, 1e-3);
     // The search on the nominal device does not write best.toml: that file gets the waveform for varied devices.
     own.on_improvement = {};
-    own.on_estimate = [this](const SearchEstimate& of_drawing) {
-      if (options_.on_estimate) options_.on_estimate(searched_.estimate(of_drawing));
+    own.on_estimate = [this](const SearchEstimate& of_nominal) {
+      if (options_.on_estimate) options_.on_estimate(searched_.estimate(of_nominal));
     };
-    own.on_start = [this](const FamilyColumns& of_drawing) {
-      FamilyColumns all = of_drawing;
+    own.on_start = [this](const FamilyColumns& of_nominal) {
+      FamilyColumns all = of_nominal;
       std::ranges::copy(searched_.columns().families, std::back_inserter(all.families));
       if (options_.on_start) options_.on_start(all);
-      drawing_options_.memory = options_.memory;  // on_start may have created the memory of evaluations
-      search_beside(of_drawing.families.size());
+      nominal_options_.memory = options_.memory;  // on_start may have created the memory of evaluations
+      search_beside(of_nominal.families.size());
     };
     return own;
   }
@@ -103,11 +103,11 @@ class RobustSearchStudy {
   // nominal device begins, which has `before` waveform families.
   void search_beside(std::size_t before) {
     const bool is_beside = options_.jobs > 1, is_timed = std::isfinite(options_.max_seconds);
-    const double of_drawing = is_timed ? end_of_drawing * options_.max_seconds : 0;
+    const double of_nominal = is_timed ? end_of_nominal * options_.max_seconds : 0;
     std::promise<void> looked;
     const std::future<void> look = looked.get_future();
     beside_ = std::async(is_beside ? std::launch::async : std::launch::deferred,
-                         [this, before, reserved = is_beside ? 0 : of_drawing, given = std::move(looked)]() mutable {
+                         [this, before, reserved = is_beside ? 0 : of_nominal, given = std::move(looked)]() mutable {
                            // If no candidate is evaluated, the destructor of the promise `own` ends the wait for it in
                            // look.wait().
                            std::promise<void> own = std::move(given);
@@ -117,11 +117,11 @@ class RobustSearchStudy {
     if (!is_beside) {
       beside_.wait();
     } else if (is_timed) {
-      static_cast<void>(look.wait_for(std::chrono::duration<double>(of_drawing)));
+      static_cast<void>(look.wait_for(std::chrono::duration<double>(of_nominal)));
     } else {
       look.wait();
     }
-    searches_drawing_ = true;
+    searches_nominal_ = true;
   }
 
   // Makes the best candidate so far the result of a search that was interrupted before the final evaluation.
@@ -149,26 +149,26 @@ class RobustSearchStudy {
     result_->candidates = searched_.placed();
   }
 
-  [[nodiscard]] DriveWaveforms drawing_waveforms() const {
-    return first().space.searched(result_->drawing.best_scene->drives.waveforms());
+  [[nodiscard]] DriveWaveforms nominal_waveforms() const {
+    return first().space.searched(result_->nominal.best_scene->drives.waveforms());
   }
 
   // Returns those candidates of the search on the nominal device that perform best on varied devices. The result of that search
   // comes first.
   std::vector<ChosenFrom> ranked_again() {
     std::vector<ChosenFrom> all;
-    for (TriedWaveform& one : result_->drawing.tried)
+    for (TriedWaveform& one : result_->nominal.tried)
       all.push_back(
           {.measure = "drawing", .family = one.family, .waveforms = std::move(one.waveforms), .parameters = {}, .variables = {}});
-    result_->drawing.tried.clear();
+    result_->nominal.tried.clear();
     all = best_on(std::move(all), scouted_on, kept_of_scouted);
     all = best_on(std::move(all), ranked_on, most_of_ranked);
-    ChosenFrom drawing{.measure = "drawing",
-                       .family = result_->drawing.family,
-                       .waveforms = drawing_waveforms(),
-                       .parameters = result_->drawing.parameters,
-                       .variables = result_->drawing.variables};
-    all.insert(all.begin(), std::move(drawing));
+    ChosenFrom nominal{.measure = "drawing",
+                       .family = result_->nominal.family,
+                       .waveforms = nominal_waveforms(),
+                       .parameters = result_->nominal.parameters,
+                       .variables = result_->nominal.variables};
+    all.insert(all.begin(), std::move(nominal));
     return all;
   }
 
@@ -204,13 +204,13 @@ class RobustSearchStudy {
   }
 
   void judge() {
-    const CalibratedSearch measured = searched_.in_measured_units(result_->candidates.front(), drawing_waveforms());
+    const CalibratedSearch measured = searched_.in_measured_units(result_->candidates.front(), nominal_waveforms());
     tell("verdict on fresh devices", 0);
     result_->free = searched_.free();
     result_->approach = searched_.approach();
     make_choices();
     result_->varied = over_whole_window(first().given);
-    std::vector<NamedDrive> drives{{.name = for_the_drawing, .waveforms = searched_.all_drives(drawing_waveforms())}};
+    std::vector<NamedDrive> drives{{.name = for_nominal_design, .waveforms = searched_.all_drives(nominal_waveforms())}};
     for (const DeviceChoice& one : result_->choices) {
       if (one.name != default_choice) drives.push_back(named(one.name.c_str(), one.candidate));
     }
@@ -219,7 +219,7 @@ class RobustSearchStudy {
     result_->verdict = robustness(result_->varied, drives, verdict_options(), progress_);
     result_->interrupted = result_->verdict.interrupted;
     add_row(plain_step_row, plain_step(first().given, options_.actuator));
-    add_row(for_the_drawing, drawing_waveforms());
+    add_row(for_nominal_design, nominal_waveforms());
     add_row(for_the_devices, result_->candidates.front().waveforms);
     decide();
     decide_choices();
@@ -311,7 +311,7 @@ class RobustSearchStudy {
     const DevicesRow& best = rows[measured.best];
     if (!best.is_worth_measuring(own)) return;
     findings().measured = best.name;
-    result_->calibrated = with_waveforms(result_->drawing.baseline_scene, measured.best_waveforms);
+    result_->calibrated = with_waveforms(result_->nominal.baseline_scene, measured.best_waveforms);
     result_->calibrated->set(best.knowledge.time_error ? fmt::format("calibration.{}.error=\"50 ns\"", measured_time)
                                                        : fmt::format("calibration.{}.error=\"1 %\"", measured_pull_in));
   }
@@ -445,7 +445,7 @@ class RobustSearchStudy {
 
   // Returns the nominal scene with these waveforms in volts, over the simulated time of the final evaluation.
   [[nodiscard]] SceneFile scene_of(const DriveWaveforms& waveforms) const {
-    SceneFile file = with_waveforms(result_->drawing.baseline_scene, waveforms);
+    SceneFile file = with_waveforms(result_->nominal.baseline_scene, waveforms);
     if (result_->varied.duration > first().given.duration)
       file.assign("simulate.duration", Quantity{.value = result_->varied.duration, .dimension = dimension::time});
     return file;
@@ -454,17 +454,17 @@ class RobustSearchStudy {
   // Makes these waveforms the result of the search, with a confirmed simulation of the closing of the nominal device.
   void win(const DriveWaveforms& waveforms) {
     OptimizeResult& best = result_->best;
-    const OptimizeResult& drawing = result_->drawing;
-    best.best_scene = read_back(scene_of(waveforms), "best.toml", drawing.scene);
+    const OptimizeResult& nominal = result_->nominal;
+    best.best_scene = read_back(scene_of(waveforms), "best.toml", nominal.scene);
     best.best = simulate(*best.best_scene, true, progress_);
     best.checks = run_checks(*best.best_scene);
     const Metrics& m = best.best->metrics;
-    best.goal_met = goal_met(options_.target, m, drawing.baseline.metrics);
+    best.goal_met = goal_met(options_.target, m, nominal.baseline.metrics);
     best.confirmed = best.goal_met && std::ranges::all_of(best.checks, [](const CheckingRun& run) {
-                       return run.varied == Varied::gas || run.metrics.lands();
+                       return run.varied == Varied::gas || run.metrics.is_bounce_free();
                      });
     best.better_than_baseline = !best.plain_step_wins;
-    best.harder_than_step = hardness_beyond_step(m, drawing.baseline.metrics);
+    best.harder_than_step = hardness_beyond_step(m, nominal.baseline.metrics);
     best.best_cost = searched_.cost().value(result_->row_of_devices().judged.outcomes, searched_.aims().tail);
     best.baseline_cost = searched_.cost().value(result_->verdict.drives.front().outcomes, searched_.aims().tail);
   }
@@ -475,9 +475,9 @@ class RobustSearchStudy {
   const OptimizeOptions& options_;
   const RobustSearchOptions& devices_;
   Progress progress_;
-  std::atomic<bool> searches_drawing_ = false;
+  std::atomic<bool> searches_nominal_ = false;
   RobustSearch searched_;
-  OptimizeOptions drawing_options_;
+  OptimizeOptions nominal_options_;
   // Result of the whole search; empty until the search on the nominal device has ended.
   std::optional<RobustSearchResult> result_;
   // The best candidate with the electrode's plain step at t = 0. It gets a row of results, for comparison, if the search may
@@ -493,7 +493,7 @@ DevicesRow& RobustSearchResult::row_of_devices() {
   return *std::ranges::find(rows, std::string_view(for_the_devices), &DevicesRow::name);
 }
 
-bool RobustSearchResult::plain_step_lands() const {
+bool RobustSearchResult::plain_step_is_bounce_free() const {
   return !verdict.drives.empty() && quantile_95(verdict.drives.front().outcomes, key_of(&Metrics::major_bounce_height)) <=
                                         varied.scene.metrics.significant_rebound;
 }

@@ -1,7 +1,7 @@
-// The whole search for a waveform that varied devices can use: a tournament over devices (race), a search on the nominal device
-// in parallel, and a final evaluation (verdict) on fresh devices that no stage has used.
+// The whole search for a waveform that varied devices can use: a tournament over devices (tournament), a search on the nominal
+// device in parallel, and a final evaluation (verdict) on fresh devices that no stage has used.
 //
-//   1  A tournament of families and measures (race.h), and a choice among its results on 512 other devices, with the plain
+//   1  A tournament of families and measures (tournament.h), and a choice among its results on 512 other devices, with the plain
 //      step. The best candidate so far is reported.
 //   2  After a first candidate was evaluated on the 512 devices, the search on the nominal device (optimize.h) for a
 //      waveform of the nominal design. The two searches are independent.
@@ -55,7 +55,7 @@ struct DeviceChoice {
 struct RobustSearchResult {
   /// Scene with the process variation that was used, and with the simulated time of the final evaluation.
   PreparedScene varied;
-  OptimizeResult drawing;
+  OptimizeResult nominal;
   /// The best waveform for the devices, as simulated on the nominal device: the plain step if all other candidates are worse.
   /// best_scene is empty if the search was interrupted before the choice.
   OptimizeResult best;
@@ -82,12 +82,12 @@ struct RobustSearchResult {
   /// Returns the row for the best waveform in the table of results; call it only after the final evaluation.
   [[nodiscard]] DevicesRow& row_of_devices();
   /// True if the 95th percentile of the rebound height under the plain step, over the fresh devices, is not significant.
-  [[nodiscard]] bool plain_step_lands() const;
+  [[nodiscard]] bool plain_step_is_bounce_free() const;
 };
 
 /// Runs the search on the nominal device with the options of optimize(), and the search over varied devices; max_seconds is the
 /// budget of both together. Calls on_start with the parameters of all searches; those of the tournament begin with
-/// raced_prefix. Throws the exceptions of optimize().
+/// tournament_prefix. Throws the exceptions of optimize().
 [[nodiscard]] RobustSearchResult robust_search(const SceneFile& file, const OptimizeOptions& options,
                                                const RobustSearchOptions& devices);
 

@@ -98,15 +98,15 @@ void judge_front(RobustSearchResult& result, RobustSearch& search, const Progres
 // Copies the results of the search to the findings, except those that were added during the final evaluation.
 void complete_findings(RobustSearchResult& result, RobustSearch& search, std::uint64_t seed) {
   DevicesFindings& d = result.findings;
-  const std::optional<Closing>& drawn = result.drawing.best;
+  const std::optional<Closing>& drawn = result.nominal.best;
   d.spread_assumed = search.spread_assumed();
   d.count = static_cast<double>(result.verdict.devices);
   d.seed = static_cast<double>(seed);
   d.closings = static_cast<double>(search.budget().taken());
   if (result.chosen) d.measure = result.chosen->measure, d.waveform = result.chosen->family;
   d.better_than_plain_step = !result.best.plain_step_wins;
-  if (drawn) d.drawing = FigureValues(drawn->metrics), d.drawing_status = to_string(drawn->metrics.status);
-  d.drawing_goal_met = result.drawing.goal_met;
+  if (drawn) d.nominal = FigureValues(drawn->metrics), d.nominal_status = to_string(drawn->metrics.status);
+  d.nominal_goal_met = result.nominal.goal_met;
   for (const DevicesRow& row : result.rows) d.rows.push_back(told(row));
   for (const DeviceChoice& one : result.choices)
     d.choices.push_back({.name = one.name,
@@ -130,11 +130,11 @@ void complete_findings(RobustSearchResult& result, RobustSearch& search, std::ui
     d.missed_by = std::max(0.0, height - significant);
   }
   for (const ChosenFrom& one : result.candidates)
-    d.race.push_back({.measure = one.measure,
-                      .waveform = one.family,
-                      .closings = one.closings,
-                      .bounce_free = one.bounce_free,
-                      .cost = one.tail});
+    d.tournament.push_back({.measure = one.measure,
+                            .waveform = one.family,
+                            .closings = one.closings,
+                            .bounce_free = one.bounce_free,
+                            .cost = one.tail});
 }
 
 }  // namespace softland

@@ -52,11 +52,11 @@ std::vector<Condition> conditions_of(const SearchRequest& request, std::span<con
 
 // Parses the conditions of a request: all into `devices`, for the search over devices; those on figures that a single device
 // has also into `drawing`, for the search on the nominal device.
-void read_shared_conditions(const SearchRequest& request, std::vector<Condition>& drawing, std::vector<Condition>& devices) {
+void read_shared_conditions(const SearchRequest& request, std::vector<Condition>& nominal, std::vector<Condition>& devices) {
   devices = conditions_of(request, device_figures);
   for (const std::string& text : request.constrain) {
     try {
-      drawing.push_back(parse_condition(text, conditioned_figures));
+      nominal.push_back(parse_condition(text, conditioned_figures));
     } catch (const InvalidInput&) {
       continue;  // the figure exists only in a search over devices
     }
@@ -116,7 +116,7 @@ OptimizeOptions options_of(const SearchRequest& request, const SceneFile& scene,
 
 // Returns the waveform families of the search on the nominal device: `text` without quasi-static families, which only a search
 // over devices can use; default families if none is left.
-std::string families_of_drawing(const std::string& text, const SceneFile& scene, Actuator actuator) {
+std::string families_of_nominal(const std::string& text, const SceneFile& scene, Actuator actuator) {
   std::string kept;
   for (const std::string& family : families_of(text)) {
     if (!is_quasi_static(family)) kept += (kept.empty() ? "" : "+") + family;
@@ -124,24 +124,24 @@ std::string families_of_drawing(const std::string& text, const SceneFile& scene,
   return kept.empty() ? std::string(default_families(shaped_drives(scene, actuator))) : kept;
 }
 
-RobustSearchOptions race_of(const SearchRequest& request, const SceneFile& scene, OptimizeOptions& options,
-                            const std::string& families) {
-  RobustSearchOptions race{
+RobustSearchOptions tournament_of(const SearchRequest& request, const SceneFile& scene, OptimizeOptions& options,
+                                  const std::string& families) {
+  RobustSearchOptions tournament{
       .families = families, .hold_step_is_chosen = request.hold_step != step_is_fixed, .is_of_before = request.hold_step.empty()};
-  options.family = families_of_drawing(options.family, scene, options.actuator);
-  read_shared_conditions(request, options.conditions, race.conditions);
-  race.verdict = devices_of(request, race.verdict, 100);
-  race.verdict_is_asked = request.samples.has_value();
-  race.counts_work = !request.budget;
-  if (!request.budget) return race;
+  options.family = families_of_nominal(options.family, scene, options.actuator);
+  read_shared_conditions(request, options.conditions, tournament.conditions);
+  tournament.verdict = devices_of(request, tournament.verdict, 100);
+  tournament.verdict_is_asked = request.samples.has_value();
+  tournament.counts_work = !request.budget;
+  if (!request.budget) return tournament;
   if (std::isfinite(options.max_seconds)) {
     constexpr double usual_seconds = 60, most_lengths = 10;
-    race.closings = static_cast<long>(static_cast<double>(race_closings) *
-                                      std::clamp(options.max_seconds / usual_seconds, 0.25, most_lengths));
-    return race;
+    tournament.closings = static_cast<long>(static_cast<double>(tournament_closings) *
+                                            std::clamp(options.max_seconds / usual_seconds, 0.25, most_lengths));
+    return tournament;
   }
-  share_budget(options, race);
-  return race;
+  share_budget(options, tournament);
+  return tournament;
 }
 
 RobustOptions robust_of(const SearchRequest& request) {
@@ -178,7 +178,7 @@ std::uint64_t seed_count(const SearchRequest& request, const OptimizeOptions& op
   require_field(count <= most_seeds, "seeds", *request.seeds, [] { return fmt::format("must be at most {}", most_seeds); });
   require_field(count - 1 <= std::numeric_limits<std::uint64_t>::max() - options.seed, "seeds", *request.seeds,
                 [&] { return fmt::format("from {} {} on there are not so many", requested("seed"), options.seed); });
-  require_request(count == 1 || request.robust != by_race, [&] {
+  require_request(count == 1 || request.robust != by_tournament, [&] {
     return fmt::format("{}: is for searches on the nominal device, or over devices by one measure such as {} cvar:0.9", seeds,
                        requested("robust"));
   });
@@ -225,9 +225,9 @@ Actuator usual_actuator(const SceneFile& scene) {
 SearchRequest completed(SearchRequest request, const SceneFile& scene) {
   request = or_else(std::move(request), {.target = std::string(to_string(Target::bounce)),
                                          .optimizer = "auto",
-                                         .robust = std::string(request.seeds ? nominal_alone : by_race)});
+                                         .robust = std::string(request.seeds ? nominal_alone : by_tournament)});
   if (request.actuator.empty())
-    request.actuator = name_of(actuators, request.robust == by_race ? usual_actuator(scene) : Actuator::electrostatic);
+    request.actuator = name_of(actuators, request.robust == by_tournament ? usual_actuator(scene) : Actuator::electrostatic);
   if (request.waveform.empty()) request.waveform = usual_families(request, scene);
   if (request.hold_step.empty()) request.hold_step = request.robust == nominal_alone ? step_is_fixed : step_is_chosen;
   return request;
@@ -250,7 +250,7 @@ PlannedSearch planned(const SearchRequest& request, SceneFile scene, const std::
   std::optional<RobustOptions> robust;
   if (request.is_by_measure()) robust = robust_of(request);
   std::optional<RobustSearchOptions> for_devices;
-  if (request.robust == by_race) for_devices = race_of(request, scene, options, families);
+  if (request.robust == by_tournament) for_devices = tournament_of(request, scene, options, families);
   const std::uint64_t seeds = seed_count(request, options);
   if (over_devices) set_calibration(scene, request.calibrate);
   return {.scene = std::move(scene),

@@ -18,7 +18,7 @@ namespace softland {
 
 /// Values of SearchRequest::robust that are not a measure of risk: a tournament over devices, with a search on the nominal
 /// device in parallel; or a search on the nominal device alone.
-inline constexpr std::string_view by_race = "auto", nominal_alone = "none";
+inline constexpr std::string_view by_tournament = "auto", nominal_alone = "none";
 
 /// Values of SearchRequest::hold_step, with the piezo as actuator: the search chooses the instant of the electrode's plain
 /// step, or the step is at t = 0.
@@ -30,7 +30,7 @@ struct SearchRequest {
   std::string actuator = {};   ///< actuator whose waveforms are searched: "electrostatic", "pzt", "both"
   std::string waveform = {};   ///< waveform families to search: "knots+dual-pulse"
   std::string optimizer = {};  ///< optimizer: "auto", or the name of a method
-  std::string robust = {};     ///< search over devices: by_race, nominal_alone, or the measure of risk to minimise
+  std::string robust = {};     ///< search over devices: by_tournament, nominal_alone, or the measure of risk to minimise
   std::string hold_step = {};  ///< instant of the electrode's plain step: step_is_chosen or step_is_fixed
   std::string calibrate = {};  ///< measurements of a per-device calibration: "Vdp:1 %,frequency"; empty: that of the scene
   std::vector<std::string> constrain = {};  ///< conditions that the waveform must fulfil: "peak_contact_force < 20 uN"
@@ -41,7 +41,7 @@ struct SearchRequest {
   std::optional<std::string> seeds = {};  ///< number of searches of a study, with the seeds `seed`, `seed` + 1, ...
 
   /// True for a search over devices by one measure of risk.
-  [[nodiscard]] bool is_by_measure() const { return robust != by_race && robust != nominal_alone; }
+  [[nodiscard]] bool is_by_measure() const { return robust != by_tournament && robust != nominal_alone; }
 };
 
 /// Calls visit(name, member of the first request, of the second, ...) for each text member of the requests: std::string, or

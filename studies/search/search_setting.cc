@@ -179,7 +179,7 @@ SearchCosts SearchSetting::worst_price(const RecordedClosing& closing) const {
     const SearchCosts other = with_speed(price_of(run), run);
     worst.guide = std::max(worst.guide, other.guide);
     worst.target = std::max(worst.target, other.target);
-    worst.lands = worst.lands && other.lands;
+    worst.bounce_free = worst.bounce_free && other.bounce_free;
   }
   return worst;
 }
@@ -198,7 +198,7 @@ SearchCosts SearchSetting::price_of(const RecordedClosing& closing) const {
   const auto by = [&](const Aim& one) { return cost(one, figures, scale, given.scene.metrics); };
   SearchCosts costs{.guide = by(target.has_own_cost() ? Target::bounce : target)};
   costs.target = target.has_own_cost() ? by(target) : costs.guide;
-  costs.lands = costs.guide < never_touched && figures.major_bounce_height <= given.scene.metrics.significant_rebound;
+  costs.bounce_free = costs.guide < never_touched && figures.major_bounce_height <= given.scene.metrics.significant_rebound;
   if (conditions.empty()) return costs;
   if (!(costs.guide < never_touched)) {
     costs.apart = {.guide = costs.guide, .target = costs.target, .excess = {}};
@@ -222,13 +222,14 @@ SearchCosts SearchSetting::cost_at(std::span<const double> x, EvaluationMemory* 
   if (!commanded) return {};
   const EvaluationKey key{.family = family, .x = {x.begin(), x.end()}};
   if (memory != nullptr) {
-    if (const auto known = memory->recall(key)) return {.guide = known->guide, .target = known->cost, .lands = known->lands};
+    if (const auto known = memory->recall(key))
+      return {.guide = known->guide, .target = known->cost, .bounce_free = known->bounce_free};
   }
   auto closing = std::make_shared<const RecordedClosing>(*this, given.applied(std::move(*commanded)));
   SearchCosts found = worst_price(*closing);
   if (last != nullptr) *last = {.x = key.x, .closing = std::move(closing)};
   found.guide += 0.0, found.target += 0.0;  // turn -0 into 0, since a stored cost may lose the sign
-  if (memory != nullptr) memory->note(key, {.cost = found.target, .guide = found.guide, .lands = found.lands});
+  if (memory != nullptr) memory->note(key, {.cost = found.target, .guide = found.guide, .bounce_free = found.bounce_free});
   return found;
 }
 

@@ -20,7 +20,7 @@ using nlohmann::json;
 
 constexpr const char* kind = "search";
 // Key of the stored request (plan) with the waveform families that the user gave for a tournament.
-constexpr const char* raced_families_key = "raced_waveform";
+constexpr const char* tournament_families_key = "raced_waveform";
 
 // Reads the request of a search from its stored plan. A plan without the member `robust` is of a search on the nominal device.
 SearchRequest request_in(const json& plan) {
@@ -85,9 +85,9 @@ json plan_of(SearchRequest request, const PlannedSearch& search, const std::vect
     }
   };
   visit_prose(put, request);
-  if (request.hold_step.empty() || request.robust != by_race) plan.erase("hold-step");
+  if (request.hold_step.empty() || request.robust != by_tournament) plan.erase("hold-step");
   if (!request.constrain.empty()) plan["constrain"] = request.constrain;
-  if (search.for_devices) plan[raced_families_key] = search.for_devices->families;
+  if (search.for_devices) plan[tournament_families_key] = search.for_devices->families;
   if (search.devices() > 0) return plan;
   for (const char* of_devices : {"robust", "calibrate", "samples"}) plan.erase(of_devices);
   return plan;
@@ -127,7 +127,7 @@ StoredSearch stored_search(const AskedSearch& asked, const json& known) {
   request = completed(std::move(request), scene);
   if (asked.request.hold_step.empty() && known.is_object() && !known.contains("hold-step")) request.hold_step.clear();
   const std::string& waveform = asked.request.waveform;
-  const std::string families = waveform.empty() && known.is_object() ? known.value(raced_families_key, "") : waveform;
+  const std::string families = waveform.empty() && known.is_object() ? known.value(tournament_families_key, "") : waveform;
   StoredSearch search{planned(request, std::move(scene), families), {}};
   search.options.stop = asked.stop;
   search.options.jobs = asked.jobs;
@@ -193,8 +193,8 @@ json plan_of_seed(const json& plan, std::uint64_t seed) {
 std::int64_t evaluations_at_most(const PlannedSearch& search) {
   constexpr std::int64_t most = std::int64_t{1} << 24, scouting = 4096;
   const std::int64_t budget = std::min<std::int64_t>(search.options.max_evaluations + search.options.more_evaluations, most);
-  const std::int64_t of_race = search.for_devices ? std::min<std::int64_t>(2 * search.for_devices->closings / 8, most) : 0;
-  const std::int64_t each = search.robust ? budget / 8 + scouting : budget + of_race;
+  const std::int64_t of_tournament = search.for_devices ? std::min<std::int64_t>(2 * search.for_devices->closings / 8, most) : 0;
+  const std::int64_t each = search.robust ? budget / 8 + scouting : budget + of_tournament;
   const auto seeds = static_cast<std::int64_t>(search.seeds);
   return each > most / seeds ? most : each * seeds;
 }

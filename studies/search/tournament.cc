@@ -22,10 +22,10 @@ std::vector<std::vector<double>> points_of_box(const std::vector<Variable>& vari
 }
 
 ImprovingClosings improve(std::vector<double>& x, const StagedCost& cost, Chain chain, SearchBudget& budget,
-                          const std::function<void()>& told) {
+                          const std::function<void()>& on_candidate) {
   const StagedCost::Tried before = cost.tried(x, chain.devices, std::numeric_limits<double>::infinity(), chain.jobs);
   chain.start = x;
-  ChainEnd end = search_chain(cost, chain, budget, [&](const std::vector<double>&, double) { told(); });
+  ChainEnd end = search_chain(cost, chain, budget, [&](const std::vector<double>&, double) { on_candidate(); });
   if (end.cost < before.cost) x = std::move(end.x);
   return {.before = before.closings, .searched = end.closings};
 }

@@ -2,7 +2,7 @@
 // tournaments, and differ in their contenders and in the measure of comparison:
 //
 //   optimize.h         waveform families on the nominal device, one after another, compared by their cost
-//   race.h             waveform families by two measures, compared on the devices of the next round
+//   tournament.h             waveform families by two measures, compared on the devices of the next round
 //   robust_optimize.h  distant points of one family, compared by their cost on all devices
 //   paced_search.h     one contender, which goes on in every round
 //
@@ -100,8 +100,8 @@ struct ImprovingClosings {
   long searched = 0;  ///< number of closings of the search itself
 };
 /// Searches from the point `x`, and replaces `x` by the best point of the search if that best point costs less on the chain's
-/// devices. Calls `told` after every candidate waveform.
+/// devices. Calls `on_candidate` after every candidate waveform.
 ImprovingClosings improve(std::vector<double>& x, const StagedCost& cost, Chain chain, SearchBudget& budget,
-                          const std::function<void()>& told);
+                          const std::function<void()>& on_candidate);
 
 }  // namespace softland

@@ -36,7 +36,7 @@ Verification::Verification(const SearchSetting& setting, const OptimizeOptions& 
       conditions_(setting.conditions),
       judges_hardness_(!options.target.has_own_objective() && !(broken(setting.conditions, setting.baseline.metrics) > 0)),
       progress_{.report = options.on_preparation} {
-  if (!judges_hardness_ || !baseline_.lands()) return;
+  if (!judges_hardness_ || !baseline_.is_bounce_free()) return;
   add({.scene = setting.baseline_scene,
        .cost = setting.baseline_cost,
        .family = "step",
@@ -68,7 +68,7 @@ void Verification::add(FoundWaveform candidate) {
                .broken = broken(conditions_, m),
                .excess = excess(m),
                .confidence = met(m) && !(excess(m) > 0) ? Confidence::meets_goal
-                             : m.lands()                ? Confidence::lands
+                             : m.is_bounce_free()       ? Confidence::bounce_free
                              : m.settled                ? Confidence::settles
                                                         : Confidence::touches};
   if (!target_.is_sum() && (target_.is_about(Target::bounce) || target_.is_about(Target::rebound)))

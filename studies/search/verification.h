@@ -47,7 +47,7 @@ class Verification {
 
  private:
   // The last test that a candidate waveform has passed; each test includes all tests before it.
-  enum class Confidence { touches, settles, lands, meets_goal, confirmed };
+  enum class Confidence { touches, settles, bounce_free, meets_goal, confirmed };
 
   // A candidate waveform after its simulation over the scene's whole simulated time, at the scene's accuracy.
   struct Verified {

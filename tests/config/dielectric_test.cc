@@ -61,7 +61,7 @@ TEST(DielectricKeys, AreReadAndMayVary) {
   EXPECT_DOUBLE_EQ(d.permittivity, 7.6);
   EXPECT_DOUBLE_EQ(d.roughness, 5e-9);
   EXPECT_EQ(d.charge, 0);
-  EXPECT_TRUE(scene.device.lands_on_dielectric());
+  EXPECT_TRUE(scene.device.closes_on_dielectric());
   ASSERT_EQ(scene.spread.variables.size(), 1U);
   file.set("electrode.main.dielectric.thickness=\"0.3 um\"");
   EXPECT_DOUBLE_EQ(read_scene(file).device.electrodes[0].dielectric->thickness, 0.3e-6);
@@ -144,7 +144,7 @@ const std::string linear_bed = R"(model = "linear", stiffness = "1e17 Pa/m", fro
 TEST(LandingKeys, MakeTheFaceTheContact) {
   SceneFile file = SceneFile::parse(capacitive, "x.toml");
   const Device linear = read_scene(file).device;
-  ASSERT_TRUE(linear.lands_along_face());
+  ASSERT_TRUE(linear.closes_along_face());
   EXPECT_DOUBLE_EQ(linear.gap.contact, 2.97e-6);
   EXPECT_DOUBLE_EQ(linear.contact_position(), 140e-6);
   EXPECT_DOUBLE_EQ(linear.landing()->stiffness, 1e17);

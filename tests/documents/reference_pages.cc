@@ -228,7 +228,7 @@ void print_figure_table(const Chosen& chosen) {
 // Returns how the error of a figure becomes known.
 std::string_view error_text(const Figure& figure) {
   if (!figure.has_error()) return "none";
-  if (figure.is_told_by_two_runs()) return "two runs";
+  if (figure.error_is_from_two_runs()) return "two runs";
   return figure.conditioning == Conditioning::rest ? "quadrature" : "range";
 }
 

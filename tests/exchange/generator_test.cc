@@ -31,7 +31,7 @@ TEST(GeneratorFile, OfEveryFormatIsReadBack) {
     SCOPED_TRACE(format.name);
     const GeneratorSamples s = pulse();
     const Trace back = read_back(format, s);
-    ASSERT_EQ(back.values.size(), s.volts.size()) << back.told;
+    ASSERT_EQ(back.values.size(), s.volts.size()) << back.note;
     for (std::size_t k = 0; k < s.volts.size(); ++k)
       EXPECT_NEAR(back.times[k], static_cast<double>(k) / s.rate, 1e-15 * back.times.back());
     if (format.name != "keysight-arb") {

@@ -10,7 +10,7 @@ namespace softland {
 namespace {
 
 Trace trace(std::vector<double> values) {
-  Trace made{.times = {}, .values = std::move(values), .told = {}};
+  Trace made{.times = {}, .values = std::move(values), .note = {}};
   for (std::size_t k = 0; k < made.values.size(); ++k) made.times.push_back(static_cast<double>(k));
   return made;
 }

@@ -36,7 +36,7 @@ TEST(Trace, IsTheNamedTheOnlyOrTheUsualChannel) {
 
 TEST(Trace, ToldWhatIsTaken) {
   EXPECT_EQ(
-      trace_in("t,A\n0,1.5\n1,2\n2,3\n").told,
+      trace_in("t,A\n0,1.5\n1,2\n2,3\n").note,
       "columns, \"A\": 3 samples, every 1 s, from 0 s to 2 s; the file names no unit: V is assumed; the file names no unit of "
       "time: s is assumed");
 }
@@ -61,13 +61,13 @@ TEST(Trace, TimesThatAreRoundedFollowTheIntervalOfTheFile) {
   for (int i = 0; i < 100; ++i) text += (i < 30 ? "-3.04E-03," : "-3.03E-03,") + std::to_string(i) + "\n";
   const Trace trace = trace_in(text);
   EXPECT_DOUBLE_EQ(trace.times.back(), -3.04e-3 + 99 * 3.2e-8);
-  EXPECT_THAT(trace.told, testing::HasSubstr("rounded to 10 us"));
+  EXPECT_THAT(trace.note, testing::HasSubstr("rounded to 10 us"));
 }
 
 TEST(Trace, MissingValuesAtTheEndsAndBetween) {
   const Trace trace = trace_in("t (s),U (V),W (V)\n0,,1\n1,2,1\n2,,1\n3,4,1\n4,,1\n", {.column = "U"});
   EXPECT_EQ(trace.times, (std::vector<double>{1, 3}));
-  EXPECT_THAT(trace.told, testing::HasSubstr("3 rows without a number are left out, the first in line 2"));
+  EXPECT_THAT(trace.note, testing::HasSubstr("3 rows without a number are left out, the first in line 2"));
   trace_refused("t (s),U (V)\n0,1\n1,inf\n2,3\n", {"x.csv:3", "column 2", "must be finite"});
   EXPECT_EQ(trace_in("t (s),U (V)\n0,1\n1,2\n2,inf\n").values, (std::vector<double>{1, 2}));
 }

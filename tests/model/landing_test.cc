@@ -436,7 +436,7 @@ TEST(Landing, HasNoDerivatives) {
 TEST(Landing, TouchesFirstWhereItBendsMost) {
   const auto place = [](Device device) {
     set_face_contact(device);
-    EXPECT_TRUE(device.lands_along_face());
+    EXPECT_TRUE(device.closes_along_face());
     return device.contact_position();
   };
   EXPECT_DOUBLE_EQ(place(capacitive_bridge()), 140_um);

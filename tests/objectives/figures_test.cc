@@ -117,14 +117,14 @@ TEST(Figures, HaveTheirErrorsFromThoseWhoCanTell) {
     }
     return all;
   };
-  EXPECT_EQ(keys([](const Figure& f) { return f.is_told_by_two_runs(); }),
+  EXPECT_EQ(keys([](const Figure& f) { return f.error_is_from_two_runs(); }),
             "t_i, B_H, t_1, v_i, peak force, impact energy, p/H, charge at make, charge at break, t_F, least force, t_e, static "
             "deflection, overshoot, open settling time, opening time, highest bounce on opening, open and at rest, overshoot on "
             "opening, least gap, time in touch, impact on the "
             "back "
             "stop, "
             "drive energy, ");
-  EXPECT_EQ(keys([](const Figure& f) { return f.has_error() && !f.is_told_by_two_runs(); }),
+  EXPECT_EQ(keys([](const Figure& f) { return f.has_error() && !f.error_is_from_two_runs(); }),
             "t_p, t_b, N_B, hold force, contact resistance, t_c, N_e, capacitance, bounces on opening, ");
   EXPECT_EQ(keys([](const Figure& f) { return !f.has_error(); }), "command to open, peak voltage, peak slew, settled, ");
 }

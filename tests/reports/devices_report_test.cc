@@ -59,12 +59,12 @@ ClosingRecord devices_result() {
   d.windows = {.of_electrodes = {{"main", {.lower = 16.36, .upper = 36.31}}}, .devices = 200};
   d.front = {{.first_touch = 50e-6, .impact_speed = 0.05, .bounce_free = 0, .candidate = "knots:6 by yield"},
              {.first_touch = 90e-6, .impact_speed = 0.033, .bounce_free = 0.01, .candidate = "catch by cvar:0.9"}};
-  d.race = {{.measure = "cvar:0.9", .waveform = "catch", .closings = 18'000, .bounce_free = 0.01, .cost = 0.3}};
+  d.tournament = {{.measure = "cvar:0.9", .waveform = "catch", .closings = 18'000, .bounce_free = 0.01, .cost = 0.3}};
   d.conditions = {{.text = "t_i < 3 step", .share = {.devices = 2000, .value = 0.97, .interval = {0.96, 0.98}}, .holds = true}};
-  d.drawing[&Metrics::permanent_contact_time] = 33.4e-6;
-  d.drawing[&Metrics::major_bounce_height] = 0;
-  d.drawing_status = "done";
-  d.drawing_goal_met = true;
+  d.nominal[&Metrics::permanent_contact_time] = 33.4e-6;
+  d.nominal[&Metrics::major_bounce_height] = 0;
+  d.nominal_status = "done";
+  d.nominal_goal_met = true;
   d.measured = "Vdp to 1 %";
   d.choices = {{.name = "fast", .file = "fast.toml", .waveform = "catch", .tau = 0.4},
                {.name = "default", .file = "best.toml", .waveform = "quasi-static", .tau = 0.97}};
@@ -163,7 +163,7 @@ TEST(DevicesReport, ComesBackFromJsonAsItWas) {
   const ClosingRecord read = read_closing(written);
   ASSERT_NE(read.devices(), nullptr);
   EXPECT_EQ(json_of(read), written);
-  EXPECT_EQ(read.devices()->drawing_goal_met, true);
+  EXPECT_EQ(read.devices()->nominal_goal_met, true);
   EXPECT_EQ(internal::headline(read).whole(), internal::headline(devices_result()).whole());
   EXPECT_EQ(written["devices"]["rows"][4]["knowledge"]["piezo"], 0.01);
   EXPECT_TRUE(written["devices"]["rows"][3]["knowledge"]["piezo"].is_null()) << "not measured";

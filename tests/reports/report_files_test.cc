@@ -48,10 +48,10 @@ TEST(FilesOfASearch, HoldWhatSourcesAreToldAndNotWhatTheyMakeOfIt_long) {
               IsSupersetOf({"result.json", "report.html", "gap.svg", "trajectory.csv", "best.toml", "best.csv", "drawing.toml",
                             "drawing.csv", "robustness.html", "robustness.json", "devices.csv"}));
   const auto& devices = std::get<RobustSearchResult>(report.found.result);
-  const PreparedScene& drawing = *devices.drawing.best_scene;
-  EXPECT_EQ(text_of(report, "drawing.csv"), told_csv(drawing));
+  const PreparedScene& drawing = *devices.nominal.best_scene;
+  EXPECT_EQ(text_of(report, "drawing.csv"), commanded_csv(drawing));
   EXPECT_NE(text_of(report, "drawing.csv"), csv(named_signals(drawing), drawing.duration)) << "the output of the source";
-  EXPECT_EQ(text_of(report, "best.csv"), told_csv(*report.found.best().best_scene));
+  EXPECT_EQ(text_of(report, "best.csv"), commanded_csv(*report.found.best().best_scene));
   EXPECT_EQ(text_of(report, "drawing.toml"), drawing.scene.file.text());
 }
 

@@ -82,7 +82,7 @@ TEST(GuidedSearch, GoOnFromTheBestPointsWhereNoneHasLandedAndMoreIsGranted) {
   for (const bool lands : {true, false}) {
     const auto bowl = [&](std::span<const double> x) {
       const double cost = x[0] * x[0] + x[1] * x[1];
-      return SearchCosts{.guide = cost, .target = cost, .lands = lands};
+      return SearchCosts{.guide = cost, .target = cost, .bounce_free = lands};
     };
     std::map<long, Evaluation> seen;
     GuidedSearch stages(bowl, [&](const Evaluation& e) { seen.emplace(e.index, e); });

@@ -136,8 +136,8 @@ TEST(WorstOfModes, IsTheHighestOfTheCostsOfEveryBeam) {
   }
   EXPECT_NEAR(worst.price(signals).target, expected, 1e-9);
   EXPECT_GT(expected, 1.05 * own);
-  EXPECT_TRUE(plain.price(signals).lands);
-  EXPECT_FALSE(worst.price(signals).lands);
+  EXPECT_TRUE(plain.price(signals).bounce_free);
+  EXPECT_FALSE(worst.price(signals).bounce_free);
   const auto x = plain.space.parameters(plain.given.drives.waveforms());
   ASSERT_TRUE(x);
   EXPECT_NEAR(worst.cost_at(*x).target, expected, 1e-9);

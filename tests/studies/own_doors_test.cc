@@ -243,7 +243,7 @@ TEST(OwnObjective, ForDevicesIsRacedAsTheTargetOfItsFigure_slow) {
   const RobustSearchResult built_in = robust_search(scene, options, devices);
   options.target = by(share_of_drive);
   const RobustSearchResult own = robust_search(scene, options, devices);
-  EXPECT_EQ(own.drawing.parameters, built_in.drawing.parameters);
+  EXPECT_EQ(own.nominal.parameters, built_in.nominal.parameters);
   EXPECT_EQ(own.best.plain_step_wins, built_in.best.plain_step_wins);
   ASSERT_EQ(own.rows.size(), built_in.rows.size());
   ASSERT_GE(own.rows.size(), 3U);

@@ -62,7 +62,7 @@ double cost_of(const RobustSearchResult& found, std::string_view row) {
 
 TEST(RobustSearchStudy, IsSofterThanThePlainStepAndTheNominalDesign_optimized) {
   Asked memory;
-  const RobustSearchResult found = searched(quick_gold(), race_closings / 4, 1, 2, &memory);
+  const RobustSearchResult found = searched(quick_gold(), tournament_closings / 4, 1, 2, &memory);
   ASSERT_TRUE(found.best.best_scene);
   EXPECT_FALSE(found.best.plain_step_wins);
   EXPECT_LT(cost_of(found, "for the devices"), 0.7 * cost_of(found, "plain step"));
@@ -88,8 +88,8 @@ TEST(RobustSearchStudy, IsSofterThanThePlainStepAndTheNominalDesign_optimized) {
   EXPECT_LE(speed("Vdp and period to 1 %"), speed("Vdp to 1 %"));
   EXPECT_LE(speed("Vdp and period to 0.2 %"), speed("Vdp and period to 1 %"));
   for (const CalibrationError& known : found.findings.by_error) EXPECT_LE(known.impact_speed, 1.15 * speed("for the devices"));
-  // Stores have the families of the race after that of the nominal design. The families of the race within the usual limit are
-  // last: only that short race runs here.
+  // Stores have the families of the tournament after that of the nominal design. The families of the tournament within the usual
+  // limit are last: only that short tournament runs here.
   ASSERT_EQ(memory.columns.families.size(), 5U);
   EXPECT_EQ(memory.columns.families[1].front().substr(0, 14), "devices.catch.");
   EXPECT_TRUE(memory.alike);
@@ -103,7 +103,7 @@ TEST(RobustSearchStudy, AreNotMeasuredWhereThatHasNoValue_optimized) {
   const SceneFile file = gold_pzt({"structure.modes=2", "simulate.accuracy=1e-3"});
   const RobustSearchResult found =
       robust_search(file, {.actuator = Actuator::pzt, .family = "bspline:16", .max_evaluations = 100, .jobs = 2},
-                    {.verdict = 200, .families = "quasi-static", .closings = race_closings / 10});
+                    {.verdict = 200, .families = "quasi-static", .closings = tournament_closings / 10});
   ASSERT_TRUE(found.chosen);
   EXPECT_EQ(found.chosen->family, "quasi-static");
   for (const char* measured : {"Vdp to 1 %", "Vdp and period to 1 %"})
@@ -115,8 +115,8 @@ TEST(RobustSearchStudy, AreNotMeasuredWhereThatHasNoValue_optimized) {
 }
 
 TEST(RobustSearchStudy, HasTheSameBitsWithAnyJobs_slow) {
-  const RobustSearchResult one = searched(quick_gold(), race_closings / 4, 2, 1),
-                           two = searched(quick_gold(), race_closings / 4, 2, 2);
+  const RobustSearchResult one = searched(quick_gold(), tournament_closings / 4, 2, 1),
+                           two = searched(quick_gold(), tournament_closings / 4, 2, 2);
   EXPECT_EQ(one.best.best_scene->scene.file.text(), two.best.best_scene->scene.file.text());
   EXPECT_EQ(one.calibrated->text(), two.calibrated->text());
   EXPECT_EQ(one.findings.closings, two.findings.closings);
@@ -131,7 +131,7 @@ TEST(RobustSearchStudy, RanksTheNominalCandidatesAgainWithoutARace_optimized) {
 
 // Returns the cost of the winner on the devices from which it is chosen.
 double least_cost(const SceneFile& file, std::uint64_t seed) {
-  const RobustSearchResult found = searched(file, race_closings / 2, seed);
+  const RobustSearchResult found = searched(file, tournament_closings / 2, seed);
   EXPECT_FALSE(found.candidates.empty());
   return found.candidates.front().tail;
 }
@@ -188,7 +188,7 @@ TEST(RobustSearchStudy, ClosesDevicesBeforeTheNominalSearch_optimized) {
          .max_evaluations = 100,
          .jobs = jobs,
          .on_evaluation = [&](const Evaluation&, const OptimizeProgress&) { ++evaluations; }},
-        {.verdict = 100, .families = "catch+pulse", .closings = race_closings / 4, .on_leading = [&](const Leading& one) {
+        {.verdict = 100, .families = "catch+pulse", .closings = tournament_closings / 4, .on_leading = [&](const Leading& one) {
            if (before_first < 0) before_first = evaluations.load();
            EXPECT_EQ(one.own.size(), one.of_step.size());
            const std::string_view speed = key_of(&Metrics::largest_impact_velocity);
@@ -207,7 +207,7 @@ TEST(RobustSearchStudy, KeepsTheBestSoFarWhenItIsAskedToStop_optimized) {
   std::string leading;
   const RobustSearchResult found =
       robust_search(quick_gold(), {.family = "pulse", .max_evaluations = 100'000, .jobs = 2, .stop = &stop},
-                    {.families = "catch+pulse", .closings = race_closings / 4, .on_leading = [&](const Leading& one) {
+                    {.families = "catch+pulse", .closings = tournament_closings / 4, .on_leading = [&](const Leading& one) {
                        leading = one.scene.text();
                        stop = true;
                      }});

@@ -103,20 +103,21 @@ TEST(SearchRequest, GivesItsBudgetToEveryKindOfSearch) {
   EXPECT_EQ(nominal.options.more_evaluations, 0);
   EXPECT_TRUE(nominal.options.begins_with_half);
   EXPECT_FALSE(planned_of({.robust = "none", .budget = "400", .seeds = "2"}, file).options.begins_with_half);
-  const PlannedSearch raced = planned_of({.budget = "1000"}, file);
-  EXPECT_EQ(raced.options.max_evaluations + raced.for_devices->closings, 1000);
+  const PlannedSearch tournament = planned_of({.budget = "1000"}, file);
+  EXPECT_EQ(tournament.options.max_evaluations + tournament.for_devices->closings, 1000);
   EXPECT_EQ(planned_of({.robust = "yield"}, file).options.max_evaluations, default_closings);
   const PlannedSearch timed = planned_of({.budget = "120 s"}, file);
   EXPECT_EQ(timed.options.max_seconds, 120);
-  EXPECT_EQ(timed.for_devices->closings, 2 * race_closings);
-  EXPECT_EQ(planned_of({.budget = "1 s"}, file).for_devices->closings, race_closings / 4);
+  EXPECT_EQ(timed.for_devices->closings, 2 * tournament_closings);
+  EXPECT_EQ(planned_of({.budget = "1 s"}, file).for_devices->closings, tournament_closings / 4);
 }
 
 TEST(SearchRequest, SharesItsConditionsBetweenNominalDesignAndDevices) {
   const SceneFile file = scene("mem-gold.toml");
-  const PlannedSearch raced = planned_of({.constrain = {"impact_velocity < 50 mm/s", "largest_impact_velocity < 60 mm/s"}}, file);
-  EXPECT_EQ(raced.for_devices->conditions.size(), 2U);
-  EXPECT_LE(raced.options.conditions.size(), 2U);
+  const PlannedSearch tournament =
+      planned_of({.constrain = {"impact_velocity < 50 mm/s", "largest_impact_velocity < 60 mm/s"}}, file);
+  EXPECT_EQ(tournament.for_devices->conditions.size(), 2U);
+  EXPECT_LE(tournament.options.conditions.size(), 2U);
   EXPECT_EQ(planned_of({.robust = "yield", .constrain = {"impact_velocity < 50 mm/s"}}, file).robust->aim.conditions.size(), 1U);
   EXPECT_TRUE(planned_of({.robust = "yield", .constrain = {"impact_velocity < 50 mm/s"}}, file).options.conditions.empty());
 }

@@ -91,7 +91,7 @@ SearchEstimate estimate_over_devices(const SceneFile& file) {
   options.on_estimate = [&](const SearchEstimate& estimate) { told = estimate; };
   options.on_start = [](const FamilyColumns&) { throw Enough(); };
   try {
-    (void)robust_search(file, options, {.families = "knots", .closings = race_closings, .counts_work = true});
+    (void)robust_search(file, options, {.families = "knots", .closings = tournament_closings, .counts_work = true});
   } catch (const Enough&) {
   }
   return told;
@@ -103,10 +103,10 @@ TEST(SearchWork, OverDevicesIsWithinThatOfAUsualScene) {
   EXPECT_TRUE(slow.has_fewer);
   EXPECT_FALSE(usual.has_fewer);
   EXPECT_EQ(usual.evaluations, 5000);
-  EXPECT_EQ(usual.closings, race_closings);
+  EXPECT_EQ(usual.closings, tournament_closings);
   EXPECT_LT(slow.evaluations, usual.evaluations * 3 / 4);
   EXPECT_LT(slow.closings, usual.closings * 3 / 4);
-  EXPECT_GE(static_cast<double>(slow.closings), least_length_of_race * static_cast<double>(race_closings))
+  EXPECT_GE(static_cast<double>(slow.closings), least_length_of_tournament * static_cast<double>(tournament_closings))
       << "a race still tells something";
   EXPECT_GT(slow.closing, 0);
   EXPECT_GT(slow.seconds, 0);
@@ -117,7 +117,7 @@ TEST(SearchWork, OfASlowSceneHasItsTableOfDevices_slow) {
   ASSERT_GT(closing_work(setting_of(file)).counted, usual_work(Shaped::electrode)) << "a slow scene";
   const OptimizeOptions options{.family = "pulse", .max_evaluations = 300, .counts_work = true, .seed = 1, .jobs = 2};
   const RobustSearchResult found =
-      robust_search(file, options, {.verdict = 200, .families = "catch", .closings = race_closings, .counts_work = true});
+      robust_search(file, options, {.verdict = 200, .families = "catch", .closings = tournament_closings, .counts_work = true});
   ASSERT_GE(found.rows.size(), 3U);
   EXPECT_EQ(found.rows[0].name, "plain step");
   EXPECT_EQ(found.rows[2].name, "for the devices");

@@ -43,7 +43,7 @@ TEST(StaticSweep, ClosesAtThePullInVoltageAndOpensAtTheReleaseVoltage) {
     for (const SweepPoint& p : points) {
       const bool is_above = p.deflection < model.device().gap.contact;
       // A beam may touch the face of a dielectric beside its middle, which is then above the face.
-      if (p.state == SweepState::open || !model.device().lands_along_face()) {
+      if (p.state == SweepState::open || !model.device().closes_along_face()) {
         EXPECT_EQ(p.state == SweepState::open, is_above) << name << p.voltage;
       }
       EXPECT_GT(p.capacitance, 0) << name;

@@ -1,4 +1,4 @@
-#include "studies/search/race.h"
+#include "studies/search/family_tournament.h"
 
 #include <algorithm>
 #include <array>
@@ -20,11 +20,11 @@ using Point = std::vector<double>;
 
 // Rounds (stages) of a tournament of searches. The numbers of closings are those of each search in a tournament of default
 // length. The last two rounds continue only the best search.
-constexpr std::array race_rounds{Round{.devices = 32, .closings = 2000, .step = 0.15},
-                                 Round{.devices = 64, .closings = 6000, .step = 0.08},
-                                 Round{.contenders = 3, .devices = 128, .closings = 10'000, .step = 0.03},
-                                 Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03},
-                                 Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03}};
+constexpr std::array family_rounds{Round{.devices = 32, .closings = 2000, .step = 0.15},
+                                   Round{.devices = 64, .closings = 6000, .step = 0.08},
+                                   Round{.contenders = 3, .devices = 128, .closings = 10'000, .step = 0.03},
+                                   Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03},
+                                   Round{.contenders = 1, .devices = 128, .closings = 8000, .step = 0.03}};
 constexpr std::size_t usual_rounds = 3;
 // Searches are ranked by their bounce-free share of devices if any of them has at least this share: enough_land after the first
 // round, many_land after later ones. Only from many_land on is the best search continued beyond the usual three rounds.
@@ -38,22 +38,22 @@ constexpr std::uint64_t box_points = 32;
 // Returns the number of closings of one search in the rounds (stages) `first` to `last` - 1 of a tournament of default length.
 double closings_of_rounds(std::size_t first, std::size_t last) {
   double all = 0;
-  for (std::size_t k = first; k < last; ++k) all += race_rounds[k].closings;
+  for (std::size_t k = first; k < last; ++k) all += family_rounds[k].closings;
   return all;
 }
 
-class Race {
+class FamilyTournament {
  public:
-  Race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims, SearchBudget& budget,
-       const RaceOptions& options)
+  FamilyTournament(const std::vector<SearchSetting>& settings, const RobustCost& cost, const TournamentAims& aims,
+                   SearchBudget& budget, const TournamentOptions& options)
       : settings_(settings), cost_(cost), aims_(aims), options_(options), budget_(budget, options.closings) {}
 
   /// Runs a tournament between the searches `contenders`, or, if `alone`, the three usual rounds of a single search. `begun`
   /// are further waveforms at which the searches may begin.
-  RaceResult run(std::vector<Contender> contenders, const std::vector<DriveWaveforms>& begun, bool alone) {
+  TournamentResult run(std::vector<Contender> contenders, const std::vector<DriveWaveforms>& begun, bool alone) {
     alone_ = alone;
-    length_ = static_cast<double>(options_.closings) / static_cast<double>(race_closings);
-    if (length_ < least_length_of_race) return {};
+    length_ = static_cast<double>(options_.closings) / static_cast<double>(tournament_closings);
+    if (length_ < least_length_of_tournament) return {};
     longer_ = alone || options_.are_a_budget ? length_ : longer_where_many_land * length_;
     if (alone) budget_.allow(std::lround(length_ * closings_of_rounds(0, usual_rounds)));
     begin(contenders, begun);
@@ -67,7 +67,7 @@ class Race {
         .share = share,
         .search = [this](Contender& r, Turn turn, const Chain& chain, SearchBudget& part) { search(r, turn.round, chain, part); },
         .select = [this](std::vector<Contender> all, std::size_t k) { return select(std::move(all), k); }};
-    tournament.run(race_rounds, std::move(contenders));
+    tournament.run(family_rounds, std::move(contenders));
     std::ranges::reverse(result_.contenders);
     result_.closings = budget_.taken();
     return std::move(result_);
@@ -79,7 +79,7 @@ class Race {
   // Returns the number that stands for the random devices, and for the measure of risk and conditions of a search, in the keys
   // of the memory of evaluations.
   [[nodiscard]] std::uint64_t identity(const Contender& r) const {
-    return random_bits(options_.seed, Stream::race, r.by_share ? 1 : 0);
+    return random_bits(options_.seed, Stream::tournament, r.by_share ? 1 : 0);
   }
 
   void tell() const {
@@ -126,14 +126,14 @@ class Race {
   void search(Contender& r, std::size_t round, Chain chain, SearchBudget& part) const {
     const StagedCost staged(setting(r), cost_, aim(r), options_.memory, identity(r));
     chain.population = r.by_share && !alone_ ? population_by_share : 1;
-    chain.seed = random_bits(options_.seed, Stream::race, 1000 * round + 2 * r.family + (r.by_share ? 1 : 0));
+    chain.seed = random_bits(options_.seed, Stream::tournament, 1000 * round + 2 * r.family + (r.by_share ? 1 : 0));
     r.closings += improve(r.x, staged, chain, part, [this] { tell(); }).searched;
   }
 
   // Compares the searches after round `k` of the tournament, and returns the searches that continue in the next round.
   std::vector<Contender> select(std::vector<Contender> contenders, std::size_t k) {
     const double before = contenders.front().bounce_free;
-    judge(contenders, race_rounds[std::min(k + 1, race_rounds.size() - 1)].devices);
+    judge(contenders, family_rounds[std::min(k + 1, family_rounds.size() - 1)].devices);
     if (k > 0)
       std::ranges::transform(contenders, std::back_inserter(result_.contenders),
                              [this](const Contender& r) { return described(r); });
@@ -143,7 +143,7 @@ class Race {
         std::ranges::any_of(contenders, [&](const Contender& r) { return r.bounce_free >= (k == 0 ? enough_land : many_land); });
     if (k == 0 && many_) plan_longer();
     if (!alone_)
-      contenders = k == 0 ? survivors(std::move(contenders)) : best(std::move(contenders), race_rounds[k + 1].contenders);
+      contenders = k == 0 ? survivors(std::move(contenders)) : best(std::move(contenders), family_rounds[k + 1].contenders);
     if (k + 1 == usual_rounds) return many_ && !alone_ ? contenders : std::vector<Contender>();
     if (alone_) return contenders;
     if (options_.on_stage && !budget_.over())
@@ -155,13 +155,13 @@ class Race {
   // Extends the budget of closings after a first round with many bounce-free devices: the next rounds are longer, and the best
   // search is then continued.
   void plan_longer() {
-    const double again = alone_ ? 0 : closings_of_rounds(usual_rounds, race_rounds.size());
+    const double again = alone_ ? 0 : closings_of_rounds(usual_rounds, family_rounds.size());
     const double left = longer_ / length_ * static_cast<double>(budget_.left()) + longer_ * again;
     budget_.allow(budget_.taken() + std::lround(left));
   }
 
-  // Computes, for the best point of every search, both costs (RaceAims::tail and RaceAims::share) and the bounce-free share, on
-  // the first `devices` devices.
+  // Computes, for the best point of every search, both costs (TournamentAims::tail and TournamentAims::share) and the bounce-free
+  // share, on the first `devices` devices.
   void judge(std::vector<Contender>& contenders, std::size_t devices) {
     run_tasks(
         contenders.size(), options_.jobs,
@@ -176,12 +176,12 @@ class Race {
         budget_.stop());
   }
 
-  // Returns the cost by which searches are ranked, as a member of Contender: that by RaceAims::share, or that by
-  // RaceAims::tail.
+  // Returns the cost by which searches are ranked, as a member of Contender: that by TournamentAims::share, or that by
+  // TournamentAims::tail.
   static double Contender::*rank_by(bool share) { return share ? &Contender::share : &Contender::tail; }
 
-  // Returns the best search of every waveform family by one of two costs (RaceAims::tail or RaceAims::share, see rank_by()),
-  // and, of all other searches, the best one by the other cost.
+  // Returns the best search of every waveform family by one of two costs (TournamentAims::tail or TournamentAims::share, see
+  // rank_by()), and, of all other searches, the best one by the other cost.
   [[nodiscard]] std::vector<Contender> survivors(std::vector<Contender> contenders) const {
     std::ranges::stable_sort(contenders, {}, rank_by(many_));
     std::vector<Contender> kept, others;
@@ -205,32 +205,33 @@ class Race {
 
   const std::vector<SearchSetting>& settings_;
   const RobustCost& cost_;
-  const RaceAims& aims_;
-  const RaceOptions& options_;
+  const TournamentAims& aims_;
+  const TournamentOptions& options_;
   SearchBudget budget_;  // budget of closings that the tournament may simulate
   // Number of closings of the tournament over the default number: in general, and if many devices are bounce-free.
   double length_ = 1, longer_ = 1;
   bool alone_ = false;  // true: a single search, not a tournament
   bool many_ = false;   // true: many devices are bounce-free after the latest round, so that searches are ranked by this share
-  RaceResult result_;
+  TournamentResult result_;
 };
 
 }  // namespace
 
-RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims, SearchBudget& budget,
-                const RaceOptions& options, const std::vector<DriveWaveforms>& begun) {
+TournamentResult family_tournament(const std::vector<SearchSetting>& settings, const RobustCost& cost, const TournamentAims& aims,
+                                   SearchBudget& budget, const TournamentOptions& options,
+                                   const std::vector<DriveWaveforms>& begun) {
   std::vector<Contender> contenders;
   for (std::size_t family = 0; family < settings.size(); ++family) {
     for (const bool by_share : {false, true}) contenders.push_back({.family = family, .by_share = by_share});
   }
-  return Race(settings, cost, aims, budget, options).run(std::move(contenders), begun, false);
+  return FamilyTournament(settings, cost, aims, budget, options).run(std::move(contenders), begun, false);
 }
 
-RaceResult race_single_search(const SearchSetting& setting, std::size_t family, const RobustCost& cost, const RaceAims& aims,
-                              bool by_share, const std::vector<DriveWaveforms>& begun, SearchBudget& budget,
-                              const RaceOptions& options) {
+TournamentResult tournament_of_one(const SearchSetting& setting, std::size_t family, const RobustCost& cost,
+                                   const TournamentAims& aims, bool by_share, const std::vector<DriveWaveforms>& begun,
+                                   SearchBudget& budget, const TournamentOptions& options) {
   const std::vector<SearchSetting> settings{setting};
-  RaceResult found = Race(settings, cost, aims, budget, options).run({{.by_share = by_share}}, begun, true);
+  TournamentResult found = FamilyTournament(settings, cost, aims, budget, options).run({{.by_share = by_share}}, begun, true);
   for (Contender& r : found.contenders) r.family = family;
   return found;
 }

@@ -1,5 +1,5 @@
 // The comparison of families over devices, on a beam with two modes and with few devices.
-#include "studies/search/race.h"
+#include "studies/search/family_tournament.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,17 +20,17 @@
 namespace softland {
 namespace {
 
-class Race : public testing::Test {
+class FamilyTournament : public testing::Test {
  protected:
-  explicit Race(const SceneFile& file = gold({"simulate.duration=150 us", "structure.modes=2", "waveform.main.level=18 V",
-                                              "driver.main.max_voltage=25 V"}))
+  explicit FamilyTournament(const SceneFile& file = gold({"simulate.duration=150 us", "structure.modes=2",
+                                                          "waveform.main.level=18 V", "driver.main.max_voltage=25 V"}))
       : settings_(search_settings(file, Target::bounce, Actuator::electrostatic, "pulse+catch", {})),
         cost_(settings_.front(), aims_.tail, own_devices(settings_.front(), MeasuredUnits(), 32, 5, 0, 1, {})) {}
 
-  RaceResult run(RaceOptions options, BudgetLimits limits = {}) {
-    options.closings = race_closings / 4;
+  TournamentResult run(TournamentOptions options, BudgetLimits limits = {}) {
+    options.closings = tournament_closings / 4;
     SearchBudget budget(std::move(limits));
-    RaceResult found = race(settings_, cost_, aims_, budget, options);
+    TournamentResult found = family_tournament(settings_, cost_, aims_, budget, options);
     EXPECT_EQ(budget.taken(), found.closings);
     return found;
   }
@@ -39,8 +39,8 @@ class Race : public testing::Test {
     return cost_.value(cost_.close(setting.drives(contender.waveforms), 0, 32, 1), aims_.tail);
   }
 
-  RaceAims aims_{.tail = {.measure = parse_robust_measure("cvar:0.9", device_figures), .conditions = {}},
-                 .share = {.measure = parse_robust_measure("yield", device_figures), .conditions = {}}};
+  TournamentAims aims_{.tail = {.measure = parse_robust_measure("cvar:0.9", device_figures), .conditions = {}},
+                       .share = {.measure = parse_robust_measure("yield", device_figures), .conditions = {}}};
   std::vector<SearchSetting> settings_;
   RobustCost cost_;
 };
@@ -75,18 +75,18 @@ class Remembered final : public EvaluationMemory {
   std::map<std::string, EvaluationValues> known_;
 };
 
-TEST_F(Race, EndsWithTheSameBitsWhateverTheJobsAndTheMemory_optimized) {
-  const RaceResult one = run({.seed = 3});
+TEST_F(FamilyTournament, EndsWithTheSameBitsWhateverTheJobsAndTheMemory_optimized) {
+  const TournamentResult one = run({.seed = 3});
   ASSERT_FALSE(one.contenders.empty());
   Remembered memory;
-  const RaceResult two = run({.seed = 3, .jobs = 2, .memory = &memory});
+  const TournamentResult two = run({.seed = 3, .jobs = 2, .memory = &memory});
   EXPECT_GT(memory.noted, 100U);
   EXPECT_EQ(memory.sizes, (std::map<std::size_t, std::size_t>{{0, settings_[0].space.variables().size()},
                                                               {1, settings_[1].space.variables().size()}}));
   const std::size_t noted = memory.noted;
-  const RaceResult again = run({.seed = 3, .jobs = 2, .memory = &memory});
+  const TournamentResult again = run({.seed = 3, .jobs = 2, .memory = &memory});
   EXPECT_EQ(memory.noted, noted) << "all is known";
-  for (const RaceResult* other : {&two, &again}) {
+  for (const TournamentResult* other : {&two, &again}) {
     ASSERT_EQ(other->contenders.size(), one.contenders.size());
     EXPECT_EQ(other->closings, one.closings);
     for (std::size_t i = 0; i < one.contenders.size(); ++i) {
@@ -97,8 +97,8 @@ TEST_F(Race, EndsWithTheSameBitsWhateverTheJobsAndTheMemory_optimized) {
   EXPECT_NE(run({.seed = 4}).contenders.front().x, one.contenders.front().x);
 }
 
-TEST_F(Race, EndsBetterThanItBegins_optimized) {
-  const RaceResult found = run({.seed = 1, .jobs = 2});
+TEST_F(FamilyTournament, EndsBetterThanItBegins_optimized) {
+  const TournamentResult found = run({.seed = 1, .jobs = 2});
   double least = std::numeric_limits<double>::infinity(), of_starts = least;
   for (const Contender& contender : found.contenders) least = std::min(least, cost_of(contender));
   for (const SearchSetting& setting : settings_) {
@@ -107,28 +107,29 @@ TEST_F(Race, EndsBetterThanItBegins_optimized) {
   }
   EXPECT_LT(least, 0.8 * of_starts);
   EXPECT_LT(least, 0.8 * cost_.value(cost_.close(settings_[0].drives({}), 0, 32, 1), aims_.tail)) << "than the plain step";
-  EXPECT_NEAR(static_cast<double>(found.closings), race_closings / 4.0, race_closings / 8.0) << "two families of five";
+  EXPECT_NEAR(static_cast<double>(found.closings), tournament_closings / 4.0, tournament_closings / 8.0)
+      << "two families of five";
 }
 
-TEST_F(Race, EndsWhenItIsAskedTo) {
+TEST_F(FamilyTournament, EndsWhenItIsAskedTo) {
   std::atomic<bool> stop = true;
   EXPECT_TRUE(run({}, {.stop = &stop}).contenders.empty());
   EXPECT_TRUE(run({}, {.seconds = 0}).contenders.empty());
 }
 
-TEST_F(Race, WithTooFewClosingsIsNotRun) {
+TEST_F(FamilyTournament, WithTooFewClosingsIsNotRun) {
   SearchBudget budget({});
-  const RaceResult none = race(settings_, cost_, aims_, budget, {.closings = 1000});
+  const TournamentResult none = family_tournament(settings_, cost_, aims_, budget, {.closings = 1000});
   EXPECT_TRUE(none.contenders.empty());
   EXPECT_EQ(none.closings, 0);
 }
 
 // A switch with gaps of nanometres. Half of its devices land bounce-free, and more of them if they vary less.
-class RaceOfNearlyEqualDevices : public Race {
+class RaceOfNearlyEqualDevices : public FamilyTournament {
  protected:
   RaceOfNearlyEqualDevices()
-      : Race(scene("nem-tin.toml", {"spread.\"structure.thickness\".cov=0.2 %", "spread.\"structure.youngs_modulus\".cov=0.2 %",
-                                    "spread.gaps.cov=0.2 %"})) {}
+      : FamilyTournament(scene("nem-tin.toml", {"spread.\"structure.thickness\".cov=0.2 %",
+                                                "spread.\"structure.youngs_modulus\".cov=0.2 %", "spread.gaps.cov=0.2 %"})) {}
 };
 
 TEST_F(RaceOfNearlyEqualDevices, TakesLongerUnlessItsClosingsAreABudget_optimized) {
@@ -138,8 +139,8 @@ TEST_F(RaceOfNearlyEqualDevices, TakesLongerUnlessItsClosingsAreABudget_optimize
     const std::scoped_lock lock(guard);
     parts.push_back(part);
   };
-  const RaceResult longer = run({.seed = 1, .jobs = 2, .progress = note}),
-                   shorter = run({.are_a_budget = true, .seed = 1, .jobs = 2});
+  const TournamentResult longer = run({.seed = 1, .jobs = 2, .progress = note}),
+                         shorter = run({.are_a_budget = true, .seed = 1, .jobs = 2});
   EXPECT_GT(static_cast<double>(longer.closings), 1.3 * static_cast<double>(shorter.closings));
   EXPECT_GT(longer.contenders.front().bounce_free, 0.5);
   EXPECT_LT(parts[parts.size() * 8 / 10], 0.999) << "what is to come is known";

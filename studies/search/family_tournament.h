@@ -1,4 +1,5 @@
-// The race: a tournament (tournament.h) between searches over devices that differ in waveform family and in measure of cost.
+// The family tournament: a tournament (tournament.h) of searches over varied devices, which differ in waveform family and in
+// measure of cost.
 //
 //   round  searches                                              closings of each   devices   first step
 //   A      every family by either measure                        2000               32        0.15 of the range
@@ -31,37 +32,37 @@
 
 namespace softland {
 
-/// Default waveform families of a race (a tournament of searches).
-inline constexpr std::string_view raced_families = "knots:6+catch+dual-pulse+bspline:6+staircase:5";
-/// Default number of closings in a race (a tournament) of five waveform families by two measures.
-inline constexpr long race_closings = 86'000;
-/// Shortest race, as a share of race_closings: shorter tournaments end too early to be meaningful.
-inline constexpr double least_length_of_race = 0.25;
-/// Number of varied devices of a race (a tournament of searches). Each search tries its waveforms on the first of these
+/// Default waveform families of a family tournament.
+inline constexpr std::string_view tournament_families = "knots:6+catch+dual-pulse+bspline:6+staircase:5";
+/// Default number of closings in a tournament of five waveform families by two measures.
+inline constexpr long tournament_closings = 86'000;
+/// Shortest tournament, as a share of tournament_closings: shorter tournaments end too early to be meaningful.
+inline constexpr double least_length_of_tournament = 0.25;
+/// Number of varied devices of a family tournament. Each search tries its waveforms on the first of these
 /// devices, as many as its round has.
-inline constexpr std::uint64_t raced_devices = 256;
+inline constexpr std::uint64_t tournament_devices = 256;
 
-/// The two measures of cost that the searches of a race (a tournament) minimise.
-struct RaceAims {
+/// The two measures of cost that the searches of a family tournament minimise.
+struct TournamentAims {
   RobustAim tail;   ///< measure of the tail of the cost distribution, such as cvar:0.9
   RobustAim share;  ///< measure by the share of bounce-free devices
 };
 
-/// A search that takes part in a race (a tournament), and its result so far.
+/// A search that takes part in a family tournament, and its result so far.
 struct Contender {
   std::size_t family = 0;  ///< index of the waveform family among the settings of the tournament
-  bool by_share = false;   ///< true: the search minimises RaceAims::share; false: RaceAims::tail
+  bool by_share = false;   ///< true: the search minimises TournamentAims::share; false: TournamentAims::tail
   std::string measure = {};
   std::vector<double> x = {};
   DriveWaveforms waveforms = {};  ///< best waveforms of this search for the searched drives [V]
   long closings = 0;              ///< number of simulated closings of this search in all rounds
   double bounce_free = 0;         ///< share of bounce-free devices in the last round of the search
-  /// Costs by the measures RaceAims::tail and RaceAims::share, on the devices of the comparison after the last round.
+  /// Costs by the measures TournamentAims::tail and TournamentAims::share, on the devices of the comparison after the last round.
   double tail = std::numeric_limits<double>::infinity(), share = std::numeric_limits<double>::infinity();
 };
 
-struct RaceOptions {
-  long closings = race_closings;  ///< total number of closings of the tournament; its rounds are scaled to this number
+struct TournamentOptions {
+  long closings = tournament_closings;  ///< total number of closings of the tournament; its rounds are scaled to this number
   /// True: the tournament never exceeds `closings`; false: it may be longer if many devices are bounce-free.
   bool are_a_budget = false;
   std::uint64_t seed = 1;
@@ -73,21 +74,23 @@ struct RaceOptions {
   std::function<void(const Contender&)> on_stage = {};
 };
 
-struct RaceResult {
+struct TournamentResult {
   std::vector<Contender> contenders;  ///< best searches of all rounds but the first, those of the last round first
   long closings = 0;
 };
 
-/// Runs the tournament. `settings` differ only in SearchSetting::family and space; `cost` is for raced_devices devices. The
+/// Runs the tournament. `settings` differ only in SearchSetting::family and space; `cost` is for tournament_devices devices. The
 /// tournament counts its closings in `budget`, and ends with the budget. `begun` are further waveforms from which searches
 /// begin.
-[[nodiscard]] RaceResult race(const std::vector<SearchSetting>& settings, const RobustCost& cost, const RaceAims& aims,
-                              SearchBudget& budget, const RaceOptions& options, const std::vector<DriveWaveforms>& begun = {});
+[[nodiscard]] TournamentResult family_tournament(const std::vector<SearchSetting>& settings, const RobustCost& cost,
+                                                 const TournamentAims& aims, SearchBudget& budget,
+                                                 const TournamentOptions& options, const std::vector<DriveWaveforms>& begun = {});
 
 /// Runs a single search, of one waveform family by one measure of risk, through the first three rounds of a tournament. The
 /// search may also begin at the waveforms `begun`.
-[[nodiscard]] RaceResult race_single_search(const SearchSetting& setting, std::size_t family, const RobustCost& cost,
-                                            const RaceAims& aims, bool by_share, const std::vector<DriveWaveforms>& begun,
-                                            SearchBudget& budget, const RaceOptions& options);
+[[nodiscard]] TournamentResult tournament_of_one(const SearchSetting& setting, std::size_t family, const RobustCost& cost,
+                                                 const TournamentAims& aims, bool by_share,
+                                                 const std::vector<DriveWaveforms>& begun, SearchBudget& budget,
+                                                 const TournamentOptions& options);
 
 }  // namespace softland

@@ -14,7 +14,7 @@ namespace softland {
 
 /// Reads a quantity of this dimension, at least 0 [SI unit]. Throws InvalidRequest that names the option `what`, such as
 /// requested("marker"), the text and the rule.
-[[nodiscard]] inline double told_quantity(std::string_view what, const std::string& text, const Dimension& due) {
+[[nodiscard]] inline double quantity_argument(std::string_view what, const std::string& text, const Dimension& due) {
   Quantity given;
   try {
     given = parse_quantity(text);
