@@ -1,4 +1,6 @@
 // Main program: parses the command line and runs the requested verb (subcommand).
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -39,7 +41,7 @@ void describe(CLI::App& app) {
   app.require_subcommand(1);
   app.set_help_flag("-h,--help", "print this help");
   app.set_version_flag("--version", "softland " + std::string(version), "print the version");
-  app.footer(
+  std::string footer =
       "Examples:\n"
       "  softland optimize --target bounce --actuator pzt\n"
       "  softland new > my-switch.toml\n"
@@ -47,10 +49,9 @@ void describe(CLI::App& app) {
       "  softland simulate my-switch.toml --set gap.contact=\"1.8 um\" --out closing\n"
       "  softland optimize my-switch.toml --actuator electrostatic --waveform pulse --budget \"90 s\"\n"
       "\n"
-      "Exit status: 0 done, 2 bad input, 3 numerical failure, 4 done but the goal was not reached, 70 internal error (please\n"
-      "report), 71 no memory or threads, 74 output lost (disk full, pipe closed, store removed), "
-      "130 interrupted (the results so\n"
-      "far are written).");
+      "Exit status:";
+  for (const ExitStatus& one : exit_statuses) footer += fmt::format("\n  {:<4} {}", one.status, one.about);
+  app.footer(footer);
 }
 
 // Parses the words of the command line into the options of `app`. Returns false if the words ask for the help or the version,

@@ -1,13 +1,18 @@
 #!/bin/sh
-# commands_page.sh PROGRAM DOCUMENT: prints DOCUMENT (docs/commands.md) with all that follows its line "## Verbs" made again from what PROGRAM
-# and each of its verbs print with --help. An option that three verbs and more word alike is explained once.
+# commands_page.sh PROGRAM DOCUMENT: prints DOCUMENT (docs/commands.md) with its table of exit statuses and all that follows its line "## Verbs"
+# made again from what PROGRAM and each of its verbs print with --help. An option that three verbs and more word alike is explained once.
 set -eu
 program=$1 document=$2
 
 help=$("$program" --help)
 verbs=$(printf '%s\n' "$help" | awk '/^[A-Z]/ { inside = /^Verbs:/ } inside && /^  [a-z]/ { print $1 }')
 
-sed '/^## Verbs$/q' "$document"
+statuses=$(printf '%s\n' "$help" | awk '/^[A-Z]/ { inside = /^Exit status:/ } inside && /^  [0-9]/ { status = $1; sub(/^ *[0-9]+ +/, ""); print "| " status " | " $0 " |" }')
+awk -v statuses="$statuses" '
+  made && /^\|/ { next }
+  { made = /^\| exit status \|/; print }
+  made { print "|---|---|\n" statuses }
+  /^## Verbs$/ { exit }' "$document"
 printf '\n| verb | what it does |\n|---|---|\n'
 printf '%s\n' "$help" | awk '/^[A-Z]/ { inside = /^Verbs:/ } inside && /^  [a-z]/ { verb = $1; sub(/^ *[^ ]+ +/, ""); print "| `" verb "` | " $0 " |" }'
 

@@ -27,27 +27,13 @@ troff() {  # WHOLE: yes for the page itself, no for one of its verbs
     function heading(name) { print (whole == "yes" ? ".SH " toupper(name) : ".PP\n" name ":") }
 
     /^Usage:/ { paragraph = 0; next }
-    /^$/ { if (commands) print ".EE"; commands = paragraph = listing = statuses = 0; next }
+    /^$/ { if (commands) print ".EE"; commands = paragraph = listing = 0; next }
     /^Verbs:/ { paragraph = 0; listing = 0; skipping = 1; next }
     /^[A-Z][a-z ]*:$/ {
       section = substr($0, 1, length($0) - 1)
       skipping = 0
       if (section ~ /^Example/) { heading(section); print ".EX"; commands = 1 }
       else { if (section !~ /^(Options|Positionals)$/ || whole == "yes") heading(section); listing = 1 }
-      next
-    }
-    /^Exit status: / { heading("Exit status"); statuses = 1; sub(/^Exit status: /, "") }
-    statuses {  # "0 done, 2 bad input, ..."
-      sub(/[,.]$/, "")
-      count = split($0, parts, /, /)
-      for (i = 1; i <= count; ++i) {
-        meaning = meaning parts[i]
-        if (i < count && parts[i + 1] !~ /^[0-9]+ /) { meaning = meaning ", "; continue }
-        print ".TP\n\\fB" (meaning + 0) "\\fR"
-        sub(/^[0-9]+ /, "", meaning)
-        print plain(meaning)
-        meaning = ""
-      }
       next
     }
     skipping && /^ / { next }
