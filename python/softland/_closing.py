@@ -27,7 +27,7 @@ class Closing:
 
     Every figure is an attribute, named as in the JSON of the program without its unit: `closing.impact_velocity` is a float [m/s] with
     attributes `unit` and `error`. The error is absolute: the difference of two runs or, for a certified closing, a bound. Figures that do not exist
-    are NaN. docs/reference/runs.md defines the figures; names follow Bognash & Asokanthan (2019).
+    are NaN. docs/reference/figures.md has the figures. Made by `Scene.simulate`.
     """
 
     def __init__(self, native: _softland.Closing) -> None:
@@ -55,7 +55,7 @@ class Closing:
 
     @property
     def status(self) -> str:
-        """Outcome: done, open, no_contact, not_settled, collapsed_at_rest, collapsed_onto_electrode or numerical_failure (docs/reference/runs.md)."""
+        """Outcome: done, open, no_contact, not_settled, collapsed_at_rest, collapsed_onto_electrode or numerical_failure."""
         return self._native.status
 
     @property
@@ -113,10 +113,12 @@ class Closing:
         return run
 
     def shape(self, time: npt.ArrayLike, places: int = 101) -> tuple[Array, Array]:
-        """The deflection of the whole beam towards the electrode: places x (p,) and y, (p,) for a time or (n, p) for times (n,) [s] -> [m].
+        """Returns the places x [m], (p,), and the deflection y of the whole beam towards the electrode [m], (p,) or (n, p).
 
-        Within a step, the modes are quintic polynomials with q, v and a of both ends. For a plate, x are the quadrature points.
-        Raises ValueError for a time outside the simulation.
+        time: a time [s], or times (n,) [s]; y has a row for each of several.
+        places: number p of places; a plate has its quadrature points instead.
+
+        Within a step, the modes are quintic polynomials with q, v and a of both ends. Raises ValueError for a time outside the simulation.
         """
         times, states = self._arcs()
         given = np.asarray(time, float)
@@ -129,7 +131,10 @@ class Closing:
         return x, y[0] if given.ndim == 0 else y
 
     def voltage(self, drive: str, times: npt.ArrayLike | None = None) -> tuple[Array, Array]:
-        """Returns times [s] and the applied voltage of a drive at these times [V]; default: even times over the simulation."""
+        """Returns times [s], (n,), and the applied voltage of a drive at these times [V], (n,).
+
+        times: times (n,) [s]; default: 2001 even times over the simulation.
+        """
         t = np.linspace(0, self._native.duration, 2001) if times is None else np.asarray(times, float)
         return t, self._native.voltage(drive, np.atleast_1d(t))
 
@@ -139,7 +144,7 @@ class Closing:
         return self._motion
 
     def result(self) -> Outcome:
-        """The whole result, a `Record` of the JSON that `softland simulate` writes, with its files."""
+        """Returns the whole result, a `Record` of the JSON that `softland simulate` writes, with its files."""
         return Outcome(self._native.outcome())
 
     def save(self, folder: str | os.PathLike[str]) -> Any:
@@ -147,7 +152,7 @@ class Closing:
         return self.result().save(folder)
 
     def table(self) -> pandas.DataFrame:
-        """A table of the figures in pandas: value, error and unit by name."""
+        """Returns the figures as a pandas table: value, error and unit by name."""
         import pandas
 
         rows = {name: (float(one), one.error, one.unit) for name, one in self._figures.items() if not isinstance(one, bool)}

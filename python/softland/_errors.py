@@ -6,7 +6,10 @@ from __future__ import annotations
 class InvalidInput(ValueError):
     """Invalid input. The message names value and rule; for a scene file also line and key.
 
-    Attributes: `message`; `key`, the path of the key ("gap.contact"); `file` and `line` of the scene file; None if not known.
+    message: text of the exception.
+    key: path of the key, such as "gap.contact"; None if not known.
+    file: name of the scene file; None if not known.
+    line: line of the scene file; None if not known.
     """
 
     def __init__(self, message: str, key: str | None = None, file: str | None = None, line: int | None = None) -> None:

@@ -26,7 +26,11 @@ class Evaluator:
     `softland robustness` for the same device; figures that do not exist are NaN. An evaluator can be called from several threads and pickled, and
     works with SciPy, Optuna, OpenTURNS, scikit-learn and Dask.
 
-    Attributes: `keys` and `units` of the columns; `figures`; `nominal`, the values in the scene (d,).
+    keys: names of the columns of x, (d,).
+    units: units of these columns, (d,).
+    figures: names of the columns of the result, (m,).
+    nominal: values in the scene, (d,).
+    jobs: number of threads.
     """
 
     def __init__(
@@ -44,7 +48,12 @@ class Evaluator:
         self._reasons: dict[int, str] = {}
 
     def __call__(self, x: npt.ArrayLike, progress: bool | Progress | None = False) -> Array:
-        """Returns the figures of rows, (n, d) -> (n, m), or of one row, (d,) -> (m,). Raises InvalidInput for another shape, KeyboardInterrupt on Ctrl-C."""
+        """Returns the figures of rows, (n, d) -> (n, m), or of one row, (d,) -> (m,).
+
+        progress: True for a bar, or a function (what, part).
+
+        Raises InvalidInput for another shape, KeyboardInterrupt on Ctrl-C.
+        """
         rows = np.asarray(x, float)
         if rows.ndim not in (1, 2) or rows.shape[-1] != len(self.keys):
             hint = ": one key, so x[:, None]" if len(self.keys) == 1 and rows.ndim == 1 else ""
@@ -64,7 +73,7 @@ class Evaluator:
         return dict(self._reasons)
 
     def jacobian(self, x: npt.ArrayLike) -> Array:
-        """Returns the exact derivatives of the figures by the keys at a row, (d,) -> (m, d), also through impacts and rebounds (docs/reference/searches.md).
+        """Returns the exact derivatives of the figures by the keys at a row, (d,) -> (m, d), also through impacts and rebounds.
 
         Raises InvalidInput with the reason if there is no derivative: for counts, for a source that rounds to bits, and for vdp="each" unless either all
         voltages or none are multiples of Vdp of one electrode.

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Outcome(Record):
-    """The result of a verb: a `Record` of the JSON of the program, which can be saved to the same files."""
+    """The result of a verb: a `Record` of the JSON of the program, which can be saved to the same files. Made by `Scene.limit` and the other verbs."""
 
     def __init__(self, native: _softland.Outcome) -> None:
         super().__init__(json.loads(native.json))
@@ -30,7 +30,7 @@ class Outcome(Record):
         return self._native.files
 
     def file(self, name: str) -> str:
-        """Returns the content of one of these files."""
+        """Returns the content of one of these files. Raises KeyError for another name."""
         if name not in self._native.files:
             raise KeyError(f"unknown file {name!r}; choose from {', '.join(self._native.files)}")
         return self._native.file(name).decode("utf-8", "replace")

@@ -20,10 +20,14 @@ Array = npt.NDArray[np.float64]
 
 
 class Recording(Mapping[str, Array]):
-    """A record over time: a mapping from names of channels to values, (n,) in SI units, NaN for missing numbers.
+    """A record over time: a mapping from names of channels to values, (n,) in SI units, NaN for missing numbers. Made by `softland.read`.
 
-    Attributes: `file`; `format` of the file; `times` (n,) [s], empty if the file has none; `units`, {channel: its unit in the file, such as "mV", or
-    empty}; `notes` on assumptions, and `left_out`, data that were not read. Made by `softland.read`.
+    file: name of the file.
+    format: format of the file.
+    times: times [s], (n,); empty if the file has none.
+    units: by channel, its unit in the file, such as "mV"; empty if the file has none.
+    notes: assumptions about the file.
+    left_out: data that were not read.
     """
 
     def __init__(self, native: _softland.Recording) -> None:
@@ -56,11 +60,20 @@ class Recording(Mapping[str, Array]):
         return next(iter(self._values.values()))
 
     def contact_edges(self, threshold: float | str, channel: str | None = None, **options: Any) -> Array:
-        """Returns the times at which a contact closes and opens, (n, 2), from its voltage: see `softland.contact_edges`. channel: optional if there is one."""
+        """Returns the times at which a contact closes and opens, (n, 2), from its voltage.
+
+        threshold: voltage that separates the states [V].
+        channel: name of the channel; optional if there is one.
+        options: those of `softland.contact_edges`.
+        """
         return contact_edges(self.times, self._only(channel), threshold, **options)
 
     def waveform(self, channel: str | None = None, *, scale: float = 1.0) -> Waveform:
-        """Returns a waveform of straight lines through the samples from t = 0 on [V], multiplied by `scale`, volts at the switch per volt of the file."""
+        """Returns a waveform of straight lines through the samples from t = 0 on [V].
+
+        channel: name of the channel; optional if there is one.
+        scale: volts at the switch per volt of the file.
+        """
         values = self._only(channel) * scale
         kept = (self.times >= 0) & np.isfinite(values)
         times, volts = self.times[kept], values[kept]
@@ -108,8 +121,13 @@ def read(
 ) -> Recording:
     """Reads a file of an oscilloscope, a generator, a logger or a simulator, as `softland read`: CSV of twelve makers, SPICE PWL, VCD, UFF 58 (docs/files.md).
 
-    column: name or number, from 1, of the channel to read; time_column: the same for the times. interval: time between samples [s], if the file does not
-    give it, or "uneven". skip: number of lines at the beginning to skip. time_unit: unit of the times, such as "us". decimal: the decimal sign.
+    column: name or number, from 1, of the channel to read.
+    time_column: the same for the times.
+    interval: time between samples [s], if the file does not give it, or "uneven".
+    skip: number of lines at the beginning to skip.
+    time_unit: unit of the times, such as "us".
+    decimal: the decimal sign.
+
     Raises InvalidInput with file, line, column and rule for an unreadable file, and for an ambiguous one with the key that decides.
     """
     given = {"column": column, "time_column": time_column, "skip": skip, "time_unit": time_unit, "decimal": decimal}
@@ -131,9 +149,15 @@ def contact_edges(
 ) -> Array:
     """Returns the times at which a contact closes and opens, from its voltage: (n, 2), a row for each edge with time [s] and 1 (closes) or 0 (opens).
 
-    times [s] and volts [V], both (n,). The contact is closed where the voltage is above (or below) the threshold [V], by linear interpolation between
-    samples. hysteresis: width of the band about the threshold [V]. States shorter than `merge` [s] are ignored. from_zero: return edges from t = 0 on,
-    when the drives begin. The result can be "edges_s" of `Tuning.learn`. Raises InvalidInput for a contact that is closed at t = 0.
+    times: times of the samples [s], (n,).
+    volts: voltage of the contact [V], (n,), with straight lines between the samples.
+    threshold: voltage that separates the states [V].
+    closed: side of the threshold on which the contact is closed.
+    hysteresis: width of the band about the threshold [V].
+    merge: duration [s]; shorter states are ignored.
+    from_zero: return edges from t = 0 on, when the drives begin.
+
+    The result can be "edges_s" of `Tuning.learn`. Raises InvalidInput for a contact that is closed at t = 0.
     """
     if closed not in ("above", "below"):
         raise ValueError(f"closed {closed!r}: must be above or below")

@@ -25,10 +25,10 @@ def unit_of_key(key: str) -> tuple[str, str]:
 
 
 class Quantity(float):
-    """A float in SI units with its unit and its error.
+    """A float in SI units with its unit and its error. Arithmetic gives plain floats.
 
-    Attributes: `unit`, the SI symbol ("m/s"), empty for a plain number; `error`, absolute and in the same unit, NaN if not estimated.
-    Arithmetic gives plain floats.
+    unit: SI symbol, such as "m/s"; empty for a plain number.
+    error: absolute, in the same unit; NaN if not estimated.
     """
 
     __slots__ = ("unit", "error")
@@ -57,7 +57,8 @@ class Record(Mapping[str, Any]):
     >>> found.pull_in.static            # found["pull_in"]["static_V"]
     16.209 V
 
-    Numbers whose key has a unit are `Quantity`, NaN where the program writes null; lists of them are NumPy arrays.
+    Numbers whose key has a unit are `Quantity`, NaN where the program writes null; lists of them are NumPy arrays (n,).
+    Made by `softland.open`, and by the verbs as `Outcome`.
     """
 
     def __init__(self, data: Mapping[str, Any], errors: Mapping[str, Any] | None = None) -> None:

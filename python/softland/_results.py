@@ -26,7 +26,7 @@ _LAST = "(SELECT plan FROM session ORDER BY session DESC LIMIT 1)"
 
 
 class Result(Record):
-    """A result folder of the program, or a JSON file in it: a `Record` of the JSON. `folder`: path of the folder."""
+    """A result folder of the program, or a JSON file in it: a `Record` of the JSON. Made by `softland.open`."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(json.loads(path.read_text()))
@@ -55,7 +55,7 @@ class Result(Record):
         return {drive: Waveform.table(*np.array(points).T) for drive, points in part.get("waveforms", {}).items()}
 
     def trajectory(self) -> npt.NDArray[np.void]:
-        """Returns the content of trajectory.csv as a structured array with the columns of the file (time_s, tip_gap_m, ...)."""
+        """Returns the content of trajectory.csv as a structured array (n,) with the columns of the file (time_s, tip_gap_m, ...)."""
         course: npt.NDArray[np.void] = np.genfromtxt(self.folder / "trajectory.csv", delimiter=",", names=True)  # type: ignore[assignment]
         return course
 
@@ -70,7 +70,11 @@ class Store:
     """A store of `softland explore` or of a search: rows in one SQLite file, readable even while another process writes to it.
 
     Only the plan and the rows of the last session are read, if the store was continued with another plan.
-    Attributes: `plan`, text of the plan; `columns`, {key: (name, unit)}; `points`, number of planned points.
+    Made by `softland.open`.
+
+    plan: text of the plan.
+    columns: by key, name and unit of the column.
+    points: number of planned points.
     """
 
     def __init__(self, path: Path) -> None:
@@ -89,12 +93,12 @@ class Store:
         return sqlite3.connect(f"file:{self._path}?mode=ro", uri=True)
 
     def __len__(self) -> int:
-        """Number of rows in the store."""
+        """Returns the number of rows in the store."""
         with self._opened() as database:
             return int(database.execute("SELECT count(*) FROM results WHERE plan = " + _LAST).fetchone()[0])
 
     def rows(self) -> npt.NDArray[np.void]:
-        """Returns all rows by point, a structured array: point, the columns (SI units; NaN for missing values), status, reason."""
+        """Returns all rows by point, a structured array (n,): point, the columns (SI units; NaN for missing values), status, reason."""
         names = ", ".join('"' + key.replace('"', '""') + '"' for key in self.columns)
         with self._opened() as database:
             rows = database.execute(f"SELECT point, {names}, status, reason FROM results WHERE plan = {_LAST} ORDER BY point").fetchall()

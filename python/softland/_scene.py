@@ -95,7 +95,7 @@ class Scene(Studies, MutableMapping[str, Any]):
 
     Reading a key gives a `Quantity` for a value with a unit, else text, number, flag or list as in the file. It raises KeyError for a key that is not in
     the file; `scene.resolved()` also has all defaults. Every change is checked as the program checks a file. An invalid change raises InvalidInput and
-    is not made. `update` makes several changes at once; only the final scene must be valid.
+    is not made. `update` makes several changes at once; only the final scene must be valid. Made by `softland.load` and `softland.shipped`.
     """
 
     def __init__(self, native: _softland.Scene) -> None:
@@ -130,7 +130,7 @@ class Scene(Studies, MutableMapping[str, Any]):
         return len(_paths(self._tree()))
 
     def update(self, *others: Any, **more: Any) -> None:
-        """Makes all of these changes, or none of them after an error: update({"gap.electrode": "4 um", "gap.contact": "2.4 um"})."""
+        """Makes all of these changes, or none of them: update({"gap.electrode": "4 um", "gap.contact": "2.4 um"}). Raises InvalidInput then."""
         self._native.change([_change(self._native, key, value) for key, value in dict(*others, **more).items()])
 
     def _tree(self) -> Any:
@@ -138,7 +138,7 @@ class Scene(Studies, MutableMapping[str, Any]):
 
     @property
     def text(self) -> str:
-        """Returns the scene as TOML text, from which the same scene is read, digit for digit."""
+        """The scene as TOML text, from which the same scene is read, digit for digit."""
         return self._native.text
 
     @property
@@ -177,7 +177,10 @@ class Scene(Studies, MutableMapping[str, Any]):
     # The verbs of the program; Studies has the others.
 
     def modes(self, places: int = 101) -> Modes:
-        """Returns natural frequencies and mode shapes."""
+        """Returns natural frequencies and mode shapes.
+
+        places: number p of places along the beam; a plate has its quadrature points instead.
+        """
         return Modes(self._native.frequencies(), *self._native.shapes(places))
 
     def tune(
@@ -220,10 +223,10 @@ class Scene(Studies, MutableMapping[str, Any]):
         keys: keys that [spread] may name ("gap.contact", "electrode.main.span[2]", "driver.main.gain"), and parameters of waveforms in volts
             ("waveform.main.level", "waveform.main.times[1]").
         figures: names such as "impact_velocity".
-        vdp: pull-in voltages to which the units Vsp and Vdp refer. "nominal": those of the scene, so that every row has the voltages of the scene. "each":
-            those of each row, which is then a scene of its own; every number in the file may vary, in the unit of the file, including Vdp.
-        jobs: number of threads; default: one per core. tolerance: tolerance of the integrator; with 1e-5, the 95th percentile of rebounds changes by
-            less than 0.4 %.
+        vdp: pull-in voltages to which the units Vsp and Vdp refer. With "nominal" they are those of the scene, and every row has its voltages. With "each"
+            they are those of the row, which is then a scene of its own. Then every number in the file may vary, in the unit of the file.
+        jobs: number of threads; default: one per core.
+        tolerance: tolerance of the integrator; with 1e-5, the 95th percentile of rebounds changes by less than 0.4 %.
         """
         given = [[one] if isinstance(one, str) else one for one in (keys, figures)]
         return Evaluator(self, given[0], given[1], vdp, jobs, tolerance)
@@ -237,7 +240,13 @@ class Scene(Studies, MutableMapping[str, Any]):
 
 
 class Modes:
-    """Natural modes. `frequencies` [Hz] and `angular_frequencies` [rad/s], (n,); `x` [m], (p,); `shapes` [kg^(-1/2)], (p, n), mass-normalised."""
+    """Natural modes. Made by `Scene.modes`.
+
+    frequencies: frequencies [Hz], (n,).
+    angular_frequencies: angular frequencies [rad/s], (n,).
+    x: places along the structure [m], (p,).
+    shapes: mass-normalised shapes [kg^(-1/2)], (p, n).
+    """
 
     def __init__(self, angular: Array, x: Array, shapes: Array) -> None:
         self.angular_frequencies = angular
@@ -324,7 +333,7 @@ def load(scene: str | os.PathLike[str], set: Mapping[str, Value] | None = None) 
 
 
 def shipped(name: str) -> Scene:
-    """Returns a scene that is shipped with softland, by its name: shipped("mem-gold")."""
+    """Returns a scene that is shipped with softland, by its name: shipped("mem-gold"). Raises KeyError for another name."""
     folder = Path(_softland.scenes)
     names = sorted(path.stem for path in folder.glob("*.toml"))
     if name not in names:

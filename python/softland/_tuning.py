@@ -19,11 +19,13 @@ Array = npt.NDArray[np.float64]
 
 
 class Shot:
-    """A requested closing of a device, open loop: the waveforms to apply.
+    """A requested closing of a device, open loop: the waveforms to apply. Made by `Tuning.shot`.
 
-    Attributes: `number`, from 1; `waveforms`, {drive: Waveform}, tables that begin at t = 0, in volts at the switch; `amplifiers`, {drive: volts at the
-    switch per volt of its generator}, 1 where [driver] has no amplifier; `hold`, duration of the last levels [s]; `duration` of the record of the contact
-    from t = 0 on [s].
+    number: number of the shot, from 1.
+    waveforms: by drive, tables that begin at t = 0, in volts at the switch.
+    amplifiers: by drive, volts at the switch per volt of its generator; 1 where [driver] has no amplifier.
+    hold: duration of the last levels [s].
+    duration: duration of the record of the contact, from t = 0 on [s].
     """
 
     def __init__(self, told: tuple[int, float, float, dict[str, _softland.Waveform], str]) -> None:
@@ -42,7 +44,7 @@ class Shot:
 
     @property
     def line(self) -> dict[str, Any]:
-        """Returns the line that `softland tune --device` sends to a command (docs/tune.md)."""
+        """The line that `softland tune --device` sends to a command (docs/tune.md)."""
         return dict(json.loads(self._line))
 
     def __repr__(self) -> str:
@@ -53,7 +55,8 @@ Device = Callable[[Shot], "Mapping[str, Any] | None"]
 
 
 class Tuning:
-    """A tuning: made by `Scene.tuning`, and run by `run(device)`, or shot by shot by `learn(fire(tuning.shot()))`.
+    """A tuning of a waveform on one device. Made by `Scene.tuning`, and run by `run(device)`, or shot by shot by
+    `learn(fire(tuning.shot()))`.
 
     All closings are kept after an exception of the device and after Ctrl-C: `run` continues, and `result()` returns the results so far. With `out`, each
     closing is written to the disk before the next shot. Use a tuning from one thread at a time.
@@ -81,8 +84,9 @@ class Tuning:
     def learn(self, answer: Mapping[str, Any] | None, progress: bool | Progress | None = False) -> str:
         """Updates the model of the device by the record of the contact under `shot()`, and finds the next shot. Returns a line about both.
 
-        answer: {"edges_s": [[time, 1 closes or 0 opens], ...]} or {"closing_time_s": t or None, "bounce_count": n}, optionally with "loudness"; or
+        answer: {"edges_s": [[time in s, 1 closes or 0 opens], ...]} or {"closing_time_s": t or None, "bounce_count": n}, optionally with "loudness"; or
             {"error": "no trigger"} to repeat the shot. None, or no edges: the contact stayed open.
+
         Raises InvalidInput for an invalid answer, which is not used. After Ctrl-C in this call the answer is stored, and the next call uses it.
         """
         self._pending = self._pending or json.dumps({**(answer or {"edges_s": []}), "shot": self._native.shot()[0]}, default=_plain)
@@ -151,14 +155,14 @@ class Tuning:
 class PracticeDevice:
     """A simulated device in a laboratory, as `softland device`: a device drawn from [spread] of the scene, known only by its answers.
 
-    Called with a `Shot` it returns {"shot": number, "edges_s": [[time, 1 closes or 0 opens], ...]}. Shots do not depend on each other. Made by
-    `Scene.device`.
+    Shots do not depend on each other. Made by `Scene.device`.
     """
 
     def __init__(self, native: _softland.PracticeDevice) -> None:
         self._native = native
 
     def __call__(self, shot: Shot) -> dict[str, Any]:
+        """Returns the record of the contact under a shot: {"shot": number, "edges_s": [[time in s, 1 closes or 0 opens], ...]}."""
         return dict(json.loads(self._native.answer(shot._line)))
 
 

@@ -16,14 +16,16 @@ Array = npt.NDArray[np.float64]
 
 
 class Waveform:
-    """A drive voltage against time [V], [s]. It is immutable; methods return new waveforms.
+    """A drive voltage against time: a function of [s] in [V]. It is immutable; methods return new waveforms.
 
     >>> pulse = softland.Waveform("pulse", levels=["20 V", "8 V", "16 V"], times=["12 us", "30 us"], edge="1 us")
     >>> pulse(20e-6)
     8.0
 
-    docs/theory/sources.md and docs/reference/keys.md have the families and their parameters, which are numbers in SI units or text with a unit. Vsp and Vdp are valid
-    only in a scene. Raises InvalidInput with parameter, value and rule.
+    family: family, such as "pulse": docs/theory/sources.md and docs/reference/keys.md have all, with their parameters.
+    parameters: parameters of the family, numbers in SI units or text with a unit; Vsp and Vdp are valid only in a scene.
+
+    Raises InvalidInput with parameter, value and rule.
     """
 
     def __init__(self, family: str, **parameters: Any) -> None:
@@ -57,11 +59,11 @@ class Waveform:
 
     @property
     def breakpoints(self) -> Array:
-        """Times at which the voltage kinks or jumps, including 0 [s]."""
+        """Times at which the voltage kinks or jumps, including 0 [s], (n,)."""
         return np.asarray(self._native.breakpoints)
 
     def __call__(self, time: npt.ArrayLike) -> Any:
-        """Returns the voltage at a time, or at an array of times, [s] -> [V]; at a jump the voltage after it."""
+        """Returns the voltage at a time, or at an array of times, (n,) -> (n,), [s] -> [V]; at a jump the voltage after it."""
         times = np.asarray(time, float)
         volts = self._native.voltage(np.atleast_1d(times))
         return float(volts[0]) if times.ndim == 0 else volts
@@ -75,7 +77,7 @@ class Waveform:
         return Waveform._of(self._native.resampled(number(rate), number(end)))
 
     def points(self, end: float | str, tolerance: float = 1e-3) -> tuple[Array, Array]:
-        """Returns times [s] and voltages [V]; straight lines between them stay within `tolerance` [V] of the waveform up to `end` [s]."""
+        """Returns times [s], (n,), and voltages [V], (n,); straight lines between them stay within `tolerance` [V] of the waveform up to `end` [s]."""
         points = np.asarray(self._native.points(number(end), tolerance), float).reshape(-1, 2)
         return points[:, 0], points[:, 1]
 
