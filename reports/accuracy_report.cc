@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/require.h"
 #include "reports/accuracy_prose.h"
+#include "reports/member_lister.h"
 #include "reports/study_members.h"
 
 namespace softland {
@@ -18,27 +20,37 @@ namespace internal {
 namespace {
 
 template <class A>
-void members(A& a, FigureErrors& errors) {
-  for (std::size_t i = 0; i < errors.size(); ++i) a(studied_figures[i].key, errors[i]);
+void error_members(A& a, FigureErrors& errors) {
+  constexpr std::string_view about = "relative error of the figure";
+  if constexpr (A::lists) return a("FIGURE", errors[0], about);
+  for (std::size_t i = 0; i < errors.size(); ++i) a(studied_figures[i].key, errors[i], about);
 }
 
 }  // namespace
 }  // namespace internal
 
+// The errors of a run are its `errors` in JSON.
+template <class A>
+void run_members(A& a, AccuracyRow& row, std::string_view errors, std::string_view errors_about) {
+  a.custom("integrator", row.integrator, internal::integrator_name, internal::read_integrator,
+           internal::Like<std::string>{"integrator"});
+  a("tolerance", row.tolerance, "relative tolerance");
+  a("points_per_length", internal::OrNull{row.points_per_length}, "quadrature points per length of the beam; null for a plate");
+  a("modes", row.modes, "number of modes");
+  if (a.has(!row.missing.empty())) a("missing", row.missing, "why the run has no figures");
+  if (!row.missing.empty()) return;
+  a.object(
+      errors, [&](auto& inside) { internal::error_members(inside, row.errors); }, errors_about);
+  a("metrics", row.figures, "figures of the run");
+  a("steps", row.work.steps, "number of steps");
+  a("rhs_evaluations", row.work.rhs_evaluations, "number of evaluations of the right-hand side");
+  a("cpu_s", row.seconds, "median processor time of one closing");
+  a("runs", row.runs, "number of timed runs");
+}
+
 template <class A>
 void members(A& a, AccuracyRow& row) {
-  a.custom("integrator", row.integrator, internal::integrator_name, internal::read_integrator);
-  a("tolerance", row.tolerance);
-  a("points_per_length", internal::OrNull{row.points_per_length});
-  a("modes", row.modes);
-  if (a.has(!row.missing.empty())) a("missing", row.missing);
-  if (!row.missing.empty()) return;
-  a.object("relative_errors", [&](auto& errors) { internal::members(errors, row.errors); });
-  a("metrics", row.figures);
-  a("steps", row.work.steps);
-  a("rhs_evaluations", row.work.rhs_evaluations);
-  a("cpu_s", row.seconds);
-  a("runs", row.runs);
+  run_members(a, row, "relative_errors", "relative error of each figure against the reference");
 }
 
 namespace {
@@ -48,7 +60,7 @@ json reference_json(const AccuracyStudy& study) {
   json reference = internal::record_json(study.reference);
   reference["resolution"] = reference["relative_errors"];
   internal::JsonWriter resolution;
-  internal::members(resolution, const_cast<FigureErrors&>(study.resolution));
+  internal::error_members(resolution, const_cast<FigureErrors&>(study.resolution));
   reference["resolution"] = std::move(resolution).take();
   reference.erase("relative_errors");
   return reference;
@@ -91,37 +103,74 @@ void set_missing(std::vector<AccuracyRow>& rows, const Metrics& reference) {
 
 }  // namespace
 
+namespace internal {
+
+// The JSON of the reference run, whose errors have another name.
+struct ReferenceJson {};
+template <class A>
+void members(A& a, ReferenceJson&) {
+  AccuracyRow row;
+  run_members(a, row, "resolution", "relative difference of each figure from a second reference run");
+}
+
+struct RecommendationJson {};
+template <class A>
+void members(A& a, RecommendationJson&) {
+  a("accuracy", 0.0, "relative error that is asked for");
+  a("words", std::string(), "the recommendation in words");
+  a("setting", AccuracyRow{}, "fastest setting within it; null: none");
+}
+
+}  // namespace internal
+
 template <class A>
 void members(A& a, AccuracyRecord& record) {
   AccuracyStudy& study = record.found;
   members(a, record.origin);
-  a("status", study.status);
-  if (a.has(!study.message.empty())) a("message", study.message);
-  if (a.has(!study.rows.empty())) a("rows", study.rows);
+  a("status", study.status, "outcome of the reference run");
+  if (a.has(!study.message.empty())) a("message", study.message, "why there is no reference run, or why it is looser");
+  if (a.has(!study.rows.empty())) a("rows", study.rows, "runs of the integrator of `simulate` and of others");
   if (study.rows.empty()) return;
   a.custom(
       "reference", study.reference, [&](const AccuracyRow&) { return reference_json(study); },
-      internal::JsonReader::read<AccuracyRow>);
+      internal::JsonReader::read<AccuracyRow>, internal::Like<internal::ReferenceJson>{"the reference run"});
   if constexpr (A::reads) {
     internal::JsonReader reference(a.at("reference"));
-    reference.object("resolution", [&](auto& resolution) { internal::members(resolution, study.resolution); });
+    reference.object(
+        "resolution", [&](auto& resolution) { internal::error_members(resolution, study.resolution); },
+        "relative difference between two reference runs");
   }
-  a("modes", study.modes);
-  a("without_restart_at_contact", study.through);
-  if (a.has(!study.why_always_restarted.empty())) a("why_always_restarted", study.why_always_restarted);
-  a.object("cloud", [&](auto& cloud) {
-    for (std::size_t i = 0; i < studied_figures.size(); ++i) {
-      cloud.object(studied_figures[i].key, [&](auto& one) {
-        members(one, study.cloud[i]);
-        one("well_conditioned", study.conditioned[i]);
-      });
-    }
-    cloud(key_of(&Metrics::permanent_contact_time), study.permanent_contact_time);
-    cloud(key_of(&Metrics::bounce_count), study.bounce_count);
-  });
+  a("modes", study.modes, "runs with other numbers of modes");
+  a("without_restart_at_contact", study.through, "runs without a restart at make and break of contact");
+  if (a.has(!study.why_always_restarted.empty()))
+    a("why_always_restarted", study.why_always_restarted, "why there are no such runs");
+  a.object(
+      "cloud",
+      [&](auto& cloud) {
+        for (std::size_t i = 0; i < (A::lists ? 1 : studied_figures.size()); ++i) {
+          cloud.object(
+              A::lists ? "FIGURE" : studied_figures[i].key,
+              [&](auto& one) {
+                members(one, study.cloud[i]);
+                one("well_conditioned", study.conditioned[i], "whether the error of the figure means something");
+              },
+              "range of the figure");
+        }
+        cloud(key_of(&Metrics::permanent_contact_time), study.permanent_contact_time, "range of the permanent contact time");
+        cloud(key_of(&Metrics::bounce_count), study.bounce_count, "range of the bounce count");
+      },
+      "ranges of figures over perturbed runs");
   a.custom(
       "recommendations", study.recommendations, [&](const auto&) { return recommendations_json(study); },
-      [&](const json& from) { return read_recommendations(from, study.rows); });
+      [&](const json& from) { return read_recommendations(from, study.rows); },
+      internal::Like<std::vector<internal::RecommendationJson>>{"fastest setting for each accuracy"});
+}
+
+template <>
+std::vector<JsonMember> json_members<AccuracyRecord>() {
+  AccuracyRecord record;
+  record.found.rows.emplace_back();
+  return internal::listed(record);
 }
 
 json json_of(const AccuracyRecord& record) { return internal::record_json(record); }

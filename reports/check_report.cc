@@ -5,6 +5,7 @@
 #include "base/printable.h"
 #include "base/shortened.h"
 #include "document/text.h"
+#include "reports/member_lister.h"
 #include "reports/pull_in_members.h"
 #include "studies/closing/summits_at_hold.h"
 
@@ -31,36 +32,42 @@ std::map<std::string, PullInRecord> read_by_electrode(const json& from) {
 
 template <class A>
 void members(A& a, CheckRecord::Line& line) {
-  a("name", line.name);
-  a("value", line.value);
+  a("name", line.name, "name of the number");
+  a("value", line.value, "its value as text");
 }
 
 template <class A>
 void members(A& a, CheckRecord::Rest& rest) {
-  a("far_end_rise_m", rest.far_end_rise);
-  a("far_end_gap_m", rest.far_end_gap);
-  a("contact_rise_m", rest.contact_rise);
-  a("contact_gap_m", rest.contact_gap);
-  a("least_electrode_gap_m", rest.least_gap);
+  a("far_end_rise_m", rest.far_end_rise, "rise of the far end above the straight shape");
+  a("far_end_gap_m", rest.far_end_gap, "distance of the far end to the electrode");
+  a("contact_rise_m", rest.contact_rise, "rise at the first contact above the straight shape");
+  a("contact_gap_m", rest.contact_gap, "distance at the first contact to the contact plane");
+  a("least_electrode_gap_m", rest.least_gap, "smallest gap to the electrodes");
 }
 
 template <class A>
 void members(A& a, CheckRecord& record) {
   members(a, record.origin);
-  a.derived("status", std::string(to_string(Status::done)));
-  a("file", record.file);
-  a("title", record.title);
-  a("natural_frequencies_rad_s", record.frequencies);
-  a("rest_shape", record.rest_shape);
-  a.custom("pull_in", record.pull_in, by_electrode, read_by_electrode);
-  a("hold_window_V", record.hold_windows);
-  a("dynamic_precision", record.dynamic_precision);
-  a("closed_state", internal::OrNull{record.closed_state});
-  a("stable_path", internal::OrNull{record.stable_path});
-  a("duration_s", record.duration);
-  a("tolerance", record.tolerance);
-  a("warnings", record.warnings);
-  a("lines", record.lines);
+  a.derived("status", std::string(to_string(Status::done)), "`done`");
+  a("file", record.file, "scene file, as it was given");
+  a("title", record.title, "title of the scene");
+  a("natural_frequencies_rad_s", record.frequencies, "natural angular frequencies");
+  a("rest_shape", record.rest_shape, "shape at rest, if it is not straight");
+  a.custom("pull_in", record.pull_in, by_electrode, read_by_electrode,
+           internal::OneOrMore<PullInRecord>{"pull-in voltages of the electrode"});
+  a("hold_window_V", record.hold_windows, "by electrode, release voltage and voltage of the collapse onto it");
+  a("dynamic_precision", record.dynamic_precision, "relative precision of the dynamic voltages");
+  a("closed_state", internal::OrNull{record.closed_state}, "closed equilibrium under the hold levels");
+  a("stable_path", internal::OrNull{record.stable_path}, "path of stable equilibria to the contact");
+  a("duration_s", record.duration, "simulated time");
+  a("tolerance", record.tolerance, "relative tolerance of the integrator");
+  a("warnings", record.warnings, "warnings");
+  a("lines", record.lines, "derived numbers, as `check` prints them");
+}
+
+template <>
+std::vector<JsonMember> json_members<CheckRecord>() {
+  return internal::listed<CheckRecord>();
 }
 
 json json_of(const CheckRecord& record) { return internal::record_json(record); }

@@ -9,6 +9,7 @@
 #include "base/require.h"
 #include "reports/closing_captions.h"
 #include "reports/closing_members.h"
+#include "reports/member_lister.h"
 #include "reports/record_file.h"
 #include "reports/study_members.h"
 
@@ -209,6 +210,41 @@ void add_verdict(json& j, const ClosingRecord& r) {
 }
 
 }  // namespace
+
+template <>
+std::vector<JsonMember> json_members<Origin>() {
+  return internal::listed<Origin>();
+}
+
+template <>
+std::vector<JsonMember> json_members<ClosingRecord>() {
+  ClosingRecord record;
+  record.best.figures.emplace();
+  record.certificate.emplace();
+  std::vector<JsonMember> all = internal::listed(record);
+  internal::add_members(all,
+                        {{.key = "collapse_time_s", .type = "number", .about = "time at which the beam touched the electrode"},
+                         {.key = "static_deflection_m", .type = "number", .about = "that of `metrics`"},
+                         {.key = "capacitance_F", .type = "number", .about = "that of `metrics`"}});
+  return all;
+}
+
+template <>
+std::vector<JsonMember> json_members<SearchRecord>() {
+  ClosingRecord record;
+  record.best.figures.emplace();
+  record.certificate.emplace();
+  record.search.emplace().devices.emplace();
+  std::vector<JsonMember> all = internal::listed(record);
+  internal::add_members(all, {{.key = "confirmed", .type = "true or false", .about = "whether the repeated simulations agree"},
+                              {.key = "worst",
+                               .type = "record",
+                               .about = "repeated simulation that disagrees most",
+                               .members = {{.key = "name", .type = "text", .about = "what differs in it"},
+                                           {.key = "figure", .type = "text", .about = "key of the figure that disagrees"},
+                                           {.key = "value", .type = "number", .about = "value of this figure"}}}});
+  return all;
+}
 
 json json_of(const ClosingRecord& r) {
   json j = internal::record_json(r);

@@ -1,7 +1,10 @@
-// Lists the members of ClosingRecord (the results of a closing or a search) and of its parts, with their names in JSON, for
-// writing and reading: see reports/record.h.
+// Lists the members of the record of a closing and of its parts, with their names in JSON and their meaning: see
+// reports/record.h.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,35 +17,48 @@ namespace softland {
 
 namespace internal {
 
-inline bool every_figure(const Figure&) { return true; }
-inline bool figure_of_no_drive(const Figure& figure) { return figure.conditioning != Conditioning::drives; }
-/// Returns true if each of several contacts has its own value of this figure of merit.
-inline bool figure_of_contact(const Figure& figure) {
-  if (figure.key == key_of(&Metrics::drive_energy)) return false;
-  const bool is_at_rest = figure.conditioning == Conditioning::rest || figure.conditioning == Conditioning::open;
-  return figure_of_no_drive(figure) && (!is_at_rest || figure.key == key_of(&Metrics::hold_force) || figure.asked != nullptr);
-}
-inline bool figure_of_number(const Figure& figure) { return !figure.is_yes_or_no(); }
+inline constexpr FigureGroup every_figure{[](const Figure&) { return true; }, "every figure of one run"};
+inline constexpr FigureGroup figure_of_no_drive{[](const Figure& figure) { return figure.conditioning != Conditioning::drives; },
+                                                "every figure of one run, except those of the drives"};
+/// The figures of which each of several contacts has its own value.
+inline constexpr FigureGroup figure_of_contact{
+    [](const Figure& figure) {
+      if (figure.key == key_of(&Metrics::drive_energy)) return false;
+      const bool is_at_rest = figure.conditioning == Conditioning::rest || figure.conditioning == Conditioning::open;
+      return figure_of_no_drive.has(figure) &&
+             (!is_at_rest || figure.key == key_of(&Metrics::hold_force) || figure.asked != nullptr);
+    },
+    "figures of one contact"};
+inline constexpr FigureGroup figure_of_number{[](const Figure& figure) { return !figure.is_yes_or_no(); },
+                                              "error of the figure, in its unit"};
 
-// Lists status and figures of merit of a run: in JSON, the status is a member of the object that holds the figures.
-template <class A, class Asked>
-void figures_and_status(A& a, FigureValues& figures, std::string& status, const Asked& asked) {
-  a.object("metrics", [&](auto& metrics) {
-    metrics.figures(figures, asked);
-    metrics("status", status);
-  });
+// Lists status and figures of a run: in JSON, the status is a member of the object that holds the figures.
+inline constexpr const char *figures_about = "figures of the run", *status_about = "outcome of the run";
+template <class A>
+void figures_and_status(A& a, FigureValues& figures, std::string& status, const FigureGroup& group) {
+  a.object(
+      "metrics",
+      [&](auto& metrics) {
+        metrics.figures(figures, group);
+        metrics("status", status, status_about);
+      },
+      figures_about);
 }
-template <class A, class Asked>
-void figures_and_status(A& a, std::optional<FigureValues>& figures, std::string& status, const Asked& asked) {
-  a.object("metrics", [&](auto& metrics) {
-    if (metrics.reads) figures.emplace();
-    metrics.figures(*figures, asked);
-    metrics("status", status);
-  });
+template <class A>
+void figures_and_status(A& a, std::optional<FigureValues>& figures, std::string& status, const FigureGroup& group) {
+  a.object(
+      "metrics",
+      [&](auto& metrics) {
+        if (metrics.reads || !figures) figures.emplace();
+        metrics.figures(*figures, group);
+        metrics("status", status, status_about);
+      },
+      figures_about);
 }
 template <class A>
 void figure_errors(A& a, FigureValues& errors) {
-  a.object("errors", [&](auto& inside) { inside.figures(errors, figure_of_number); });
+  a.object(
+      "errors", [&](auto& inside) { inside.figures(errors, figure_of_number); }, "errors of the figures");
 }
 
 /// Returns true if the JSON of a closing also has the members of a search.
@@ -72,401 +88,508 @@ void figure_errors(A& a, FigureValues& errors) {
 [[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
 /// Writes the waveforms among which the user can choose, each with the percentiles of its figures of merit over the devices.
 [[nodiscard]] nlohmann::json choices_json(const DevicesFindings& devices);
-/// Writes how many searches with different seeds met their goal, were confirmed, or failed, and the spread of their costs and
-/// figures of merit.
-[[nodiscard]] nlohmann::json seeds_summary(const SeedsFindings& seeds);
+/// The JSON of a choice, which has the quantiles of its row.
+struct ChoiceJson {};
+template <class A>
+void members(A& a, ChoiceJson&) {
+  DevicesFindings::Choice choice;
+  std::map<std::string, double> figures;
+  members(a, choice);
+  a("quantile_95", OrInfinite{figures}, "95th percentile of each figure");
+  a("quantile_99", OrInfinite{figures}, "99th percentile of each figure");
+}
+
+/// Least value, quartiles and largest value of a sample.
+struct FiveNumbers {
+  double least = Metrics::unset, lower_quartile = Metrics::unset, median = Metrics::unset, upper_quartile = Metrics::unset,
+         most = Metrics::unset;
+};
+template <class A>
+void members(A& a, FiveNumbers& numbers) {
+  a("least", numbers.least, "least value");
+  a("lower_quartile", numbers.lower_quartile, "lower quartile");
+  a("median", numbers.median, "median");
+  a("upper_quartile", numbers.upper_quartile, "upper quartile");
+  a("most", numbers.most, "largest value");
+}
+struct FailedSeed {
+  std::uint64_t seed = 0;
+  std::string reason;
+};
+template <class A>
+void members(A& a, FailedSeed& failed) {
+  a("seed", failed.seed, "seed of the search");
+  a("reason", failed.reason, "why it failed");
+}
+/// The common outcome of searches with several seeds.
+struct SeedsSummary {
+  std::int64_t goal_met = 0, confirmed = 0;  ///< numbers of searches
+  std::vector<FailedSeed> failed;
+  FiveNumbers cost;
+  std::map<std::string, FiveNumbers> figures;
+};
+[[nodiscard]] SeedsSummary seeds_summary(const SeedsFindings& seeds);
 
 }  // namespace internal
 
 template <class A>
 void members(A& a, MadeWith& made) {
   using internal::OrNull;
-  a("program", OrNull{made.program});
-  a("compiler", OrNull{made.compiler});
-  a("options", OrNull{made.options});
-  a("instruction_set", OrNull{made.instruction_set});
-  a("vectors", OrNull{made.vectors});
-  a("c_library", OrNull{made.c_library});
-  a("processor", OrNull{made.processor});
+  a("program", OrNull{made.program}, "hash of the program");
+  a("compiler", OrNull{made.compiler}, "compiler that built the program");
+  a("options", OrNull{made.options}, "compiler options");
+  a("instruction_set", OrNull{made.instruction_set}, "instructions for which the program was built");
+  a("vectors", OrNull{made.vectors}, "vector instructions in use");
+  a("c_library", OrNull{made.c_library}, "C library");
+  a("processor", OrNull{made.processor}, "processor of the machine");
 }
 
 /// Writes or reads the origin of results: verb, program, machine, command line and scene. The JSON of every verb begins with
 /// it.
 template <class A>
 void members(A& a, Origin& origin) {
-  a("kind", origin.kind);
-  a("version", origin.version);
-  a("made_with", origin.made_with);
-  a("command", origin.command);
-  if (a.has(!origin.scene.is_null())) a("scene", origin.scene);
-  if (a.has(!origin.scene_toml.empty())) a("scene_toml", origin.scene_toml);
+  a("kind", origin.kind, "verb that made the record");
+  a("version", origin.version, "version of softland");
+  a("made_with", origin.made_with, "what the last digits of the numbers depend on");
+  a("command", origin.command, "command line");
+  if (a.has(!origin.scene.is_null()))
+    a("scene", origin.scene, "scene with all defaults, by section and key; quantities are texts");
+  if (a.has(!origin.scene_toml.empty())) a("scene_toml", origin.scene_toml, "the same scene as the text of a scene file");
 }
 
 template <class A>
 void members(A& a, ShownMotion::Contact& contact) {
-  a("name", contact.name);
-  a("at_m", contact.at);
-  a("gap_m", contact.gap);
-  a("far_side", contact.far_side);
+  a("name", contact.name, "name of the contact; may be empty if there is one");
+  a("at_m", contact.at, "position along the structure");
+  a("gap_m", contact.gap, "rest distance to its contact plane");
+  a("far_side", contact.far_side, "whether the contact is on the far side");
 }
 template <class A>
 void members(A& a, ShownMotion::Pad& pad) {
-  a("electrode", pad.electrode);
-  a("begin_m", pad.begin);
-  a("end_m", pad.end);
-  a("gap_m", pad.gap);
-  a("far_side", pad.far_side);
+  a("electrode", pad.electrode, "name of the electrode");
+  a("begin_m", pad.begin, "begin along the structure");
+  a("end_m", pad.end, "end along the structure");
+  a("gap_m", pad.gap, "rest distance of its face to a straight structure");
+  a("far_side", pad.far_side, "whether the electrode is on the far side");
 }
 template <class A>
 void members(A& a, ShownMotion& motion) {
-  a("time_s", motion.time);
-  a("amplitudes_m", motion.amplitudes);
-  a("x_m", motion.places);
-  a("rest_m", motion.rest);
-  a("shapes", motion.shapes);
-  a("contacts", motion.contacts);
-  a("electrodes", motion.electrodes);
+  a("time_s", motion.time, "instants");
+  a("amplitudes_m", motion.amplitudes, "largest deflection of each mode at each instant");
+  a("x_m", motion.places, "positions along the structure");
+  a("rest_m", motion.rest, "height of the lower face at rest at each position");
+  a("shapes", motion.shapes, "shape of each mode at the positions, scaled to a largest size of 1");
+  a("contacts", motion.contacts, "contacts of the structure");
+  a("electrodes", motion.electrodes, "electrodes of the structure");
 }
 
 template <class A>
 void members(A& a, CurveRecord& curve) {
-  a("time_s", curve.time);
-  a("tip_gap_m", curve.gap);
-  a("tip_velocity_m_s", curve.velocity);
-  a("contact_force_N", curve.force);
-  if (a.has(!curve.resistance.empty())) a("contact_resistance_ohm", curve.resistance);
-  a.custom("rebounds", curve.rebounds, internal::rebounds_json, internal::read_rebounds);
-  if (a.has(curve.closed.has_value())) a.custom("closed", curve.closed, internal::closed_json, internal::read_closed);
+  a("time_s", curve.time, "time since the start of the run");
+  a("tip_gap_m", curve.gap, "distance of the contact point to the contact plane");
+  a("tip_velocity_m_s", curve.velocity, "velocity of the contact point towards the contact");
+  a("contact_force_N", curve.force, "contact force");
+  if (a.has(!curve.resistance.empty()))
+    a("contact_resistance_ohm", curve.resistance,
+      "resistance of the connection, null while it is open; for contacts with a resistivity");
+  a.custom(
+      "rebounds", curve.rebounds, internal::rebounds_json, internal::read_rebounds,
+      internal::Like<std::vector<std::array<double, 4>>>{"rebounds: begin [s], end [s], height [m], time of that height [s]"});
+  if (a.has(curve.closed.has_value()))
+    a.custom("closed", curve.closed, internal::closed_json, internal::read_closed,
+             internal::Like<std::vector<std::array<double, 3>>>{
+                 "times in which the contact is closed: begin [s], end [s] (null: to the end of the run), touches"});
   if (a.has(!curve.closed_contacts.empty()))
-    a.custom("closed_contacts", curve.closed_contacts, internal::closed_contacts_json, internal::read_closed_contacts);
-  a("motion", curve.motion);
+    a.custom("closed_contacts", curve.closed_contacts, internal::closed_contacts_json, internal::read_closed_contacts,
+             internal::Like<std::map<std::string, std::vector<std::array<double, 3>>>>{"the same for each of several contacts"});
+  a("motion", curve.motion, "motion of the whole structure; none if the run stopped early");
 }
 
 template <class A>
 void members(A& a, RunRecord& run) {
   internal::figures_and_status(a, run.figures, run.status, internal::every_figure);
-  a("collapse_time_s", run.collapse_time);
-  a("waveforms", run.waveforms);
+  a("collapse_time_s", run.collapse_time, "time at which the beam touched the electrode");
+  a("waveforms", run.waveforms, "waveform of each drive: time [s], level [V]; of a dispersion force its factor");
 }
 
 template <class A>
 void members(A& a, ContactFigures& contact) {
-  a("gap_m", contact.gap);
+  a("gap_m", contact.gap, "rest distance to its contact plane");
   a.figures(contact.figures, internal::figure_of_contact);
 }
 
 template <class A>
 void members(A& a, ConfirmationRecord& check) {
-  a("name", check.name);
+  a("name", check.name, "what differs in the repeated simulation");
   internal::figures_and_status(a, check.figures, check.status, internal::figure_of_no_drive);
 }
 
 template <class A>
 void members(A& a, EffectsLeftOut::LeftOut& one) {
-  a("effect", one.effect);
-  a("influence", one.influence);
+  a("effect", one.effect, "name of the effect");
+  a("influence", one.influence, "estimated relative influence on the figures");
 }
 template <class A>
 void members(A& a, EffectsLeftOut& effects) {
-  a("left_out", effects.left_out);
-  a("influence", effects.influence);
+  a("left_out", effects.left_out, "effects that were left out");
+  a("influence", effects.influence, "estimated relative influence of all of them together");
 }
 
 template <class A>
 void members(A& a, Spread& spread) {
-  a("median", spread.median);
-  a("low", spread.low);
-  a("high", spread.high);
-  a("runs", spread.runs);
+  a("median", spread.median, "median over the perturbed runs");
+  a("low", spread.low, "smallest value");
+  a("high", spread.high, "largest value");
+  a("runs", spread.runs, "number of runs");
 }
 
 template <class A>
 void members(A& a, GrazingRebound& rebound) {
-  a("rebound", rebound.number);
-  a("time_s", rebound.time);
-  a("height_m", rebound.height);
-  a(key_of(&Metrics::impact_velocity), rebound.impact_velocity);
-  a("at_significant_height", rebound.at_threshold);
+  a("rebound", rebound.number, "number of the rebound, from 1");
+  a("time_s", rebound.time, "begin of the rebound");
+  a("height_m", rebound.height, "its height");
+  a(key_of(&Metrics::impact_velocity), rebound.impact_velocity, "impact velocity of the touch before it");
+  a("at_significant_height", rebound.at_threshold,
+    "true: significant in some runs only; false: the touch before it is the slowest so far");
 }
 
 template <class A>
 void members(A& a, ClosedState& state) {
-  a("exists", state.exists);
-  a("stable", internal::OrNull{state.stable});
-  a("smallest_eigenvalue_rad2_s2", state.smallest_eigenvalue);
-  a("pulled_through_V", state.pulled_through);
-  a.custom("by_modes", state.by_modes, internal::eigenvalues_json, internal::read_by_modes);
-  a.custom("pulled_through_by_modes_V", state.pulled_through_by_modes, internal::voltages_json, internal::read_voltages);
+  a("exists", state.exists, "whether there is an equilibrium with a contact force");
+  a("stable", internal::OrNull{state.stable}, "whether it is stable");
+  a("smallest_eigenvalue_rad2_s2", state.smallest_eigenvalue, "smallest eigenvalue of the stiffness relative to the mass");
+  a("pulled_through_V", state.pulled_through, "by electrode, voltage above which the closed beam collapses onto it");
+  a.custom("by_modes", state.by_modes, internal::eigenvalues_json, internal::read_by_modes,
+           internal::Like<std::map<std::string, double>>{"smallest eigenvalue by number of modes"});
+  a.custom("pulled_through_by_modes_V", state.pulled_through_by_modes, internal::voltages_json, internal::read_voltages,
+           internal::Like<std::map<std::string, std::map<std::string, double>>>{
+               "by electrode, collapse voltage by number of modes; `converged`: extrapolated"});
 }
 
 template <class A>
 void members(A& a, PullInOfElectrode& volts) {
-  a("static_V", volts.static_pull_in);
-  a("dynamic_V", volts.dynamic_pull_in);
-  a.custom("by_modes", volts.static_by_modes, internal::static_by_modes_json, internal::read_static_by_modes);
+  a("static_V", volts.static_pull_in, "static pull-in voltage");
+  a("dynamic_V", volts.dynamic_pull_in, "dynamic pull-in voltage");
+  a.custom("by_modes", volts.static_by_modes, internal::static_by_modes_json, internal::read_static_by_modes,
+           internal::Like<std::map<std::string, std::map<std::string, double>>>{
+               "`static_V` by number of modes; `converged`: extrapolated"});
 }
 
 template <class A>
 void members(A& a, Work& work) {
-  a.custom("integrator", work.integrator, internal::integrator_name, internal::read_integrator);
-  a("steps", work.steps);
-  a("rhs_evaluations", work.rhs_evaluations);
-  a("wall_s", work.wall);
+  a.custom("integrator", work.integrator, internal::integrator_name, internal::read_integrator,
+           internal::Like<std::string>{"integrator of the run"});
+  a("steps", work.steps, "number of steps");
+  a("rhs_evaluations", work.rhs_evaluations, "number of evaluations of the right-hand side");
+  a("wall_s", work.wall, "elapsed time");
 }
 
 template <class A>
 void members(A& a, TouchLimit& limit) {
-  a("least_time_s", limit.least_time);
-  a(key_of(&Metrics::impact_velocity), limit.impact_velocity);
+  a("least_time_s", limit.least_time, "least closing time of any waveform with at most this impact velocity");
+  a(key_of(&Metrics::impact_velocity), limit.impact_velocity, "impact velocity of the best waveform");
 }
 
 template <class A>
 void members(A& a, SearchedFamilyResult& one) {
-  a("family", one.family);
-  a("evaluations", one.evaluations);
-  a("cost", one.cost);
+  a("family", one.family, "waveform family");
+  a("evaluations", one.evaluations, "number of its evaluations");
+  a("cost", one.cost, "its lowest cost");
 }
 
 template <class A>
 void members(A& a, FulfilledCondition& condition) {
-  a("condition", condition.text);
-  a("share", condition.share.value);
-  a.pair("interval", condition.share.interval.low, condition.share.interval.high);
-  a("holds", condition.holds);
+  a("condition", condition.text, "the condition, as it was given");
+  a("share", condition.share.value, "share of the devices that fulfil it");
+  a.pair("interval", condition.share.interval.low, condition.share.interval.high, "95 % confidence interval of the share");
+  a("holds", condition.holds, "whether enough devices fulfil it");
 }
 
 template <class A>
 void members(A& a, RobustFindings& robust) {
-  a("measure", robust.measure);
-  a("devices", robust.devices);
-  a("fresh_devices", robust.fresh_devices);
-  a("closings", robust.closings);
-  a("cost_on_searched_devices", robust.cost_on_searched);
-  a("failing_share", robust.failing);
-  a("measure_tells", robust.is_told);
-  a("yield", robust.yield);
-  a("conditions", robust.conditions);
+  a("measure", robust.measure, "minimised measure of risk");
+  a("devices", robust.devices, "number of devices of the search");
+  a("fresh_devices", robust.fresh_devices, "number of devices new to the search");
+  a("closings", robust.closings, "number of closings of the search");
+  a("cost_on_searched_devices", robust.cost_on_searched, "cost of the best waveform on the devices of the search");
+  a("failing_share", robust.failing, "share of the fresh devices that do not close and stay closed");
+  a("measure_tells", robust.is_told, "false: the measure would be the same if all devices failed");
+  a("yield", robust.yield, "condition of the yield, if the measure is a yield");
+  a("conditions", robust.conditions, "conditions of the search");
 }
 
 template <class A>
 void members(A& a, DevicesFindings::Row& row) {
-  a("name", row.name);
-  a.object("knowledge", [&](auto& knowledge) {
-    knowledge("Vdp", row.pull_in_error);
-    knowledge("frequency", row.frequency_error);
-    knowledge("piezo", row.piezo_error);
-    knowledge("time_s", row.time_error);
-  });
-  a("searched_for_it", row.searched_for_it);
-  a("bounce_free", row.bounce_free);
-  a("does_not_close", row.open);
-  a("collapsed_onto_electrode", row.collapsed);
-  a("quantile_50", internal::OrInfinite{row.at_50});
-  a("quantile_95", internal::OrInfinite{row.at_95});
-  a("quantile_99", internal::OrInfinite{row.at_99});
-  a("yield", row.yield);
+  a("name", row.name, "name of the row, such as `plain step`");
+  a.object(
+      "knowledge",
+      [&](auto& knowledge) {
+        knowledge("Vdp", row.pull_in_error, "relative error of the dynamic pull-in voltage");
+        knowledge("frequency", row.frequency_error, "relative error of the frequency");
+        knowledge("piezo", row.piezo_error, "relative error of the deflection by the piezo");
+        knowledge("time_s", row.time_error, "standard deviation of the error of a closing time");
+      },
+      "errors of the measurements of each device; null: not measured");
+  a("searched_for_it", row.searched_for_it, "whether the waveform was searched for these measurements");
+  a("bounce_free", row.bounce_free, "share of bounce-free devices");
+  a("does_not_close", row.open, "share of devices that stay open");
+  a("collapsed_onto_electrode", row.collapsed, "share of devices that collapse onto the electrode");
+  a("quantile_50", internal::OrInfinite{row.at_50}, "median of each figure over the devices");
+  a("quantile_95", internal::OrInfinite{row.at_95}, "95th percentile of each figure");
+  a("quantile_99", internal::OrInfinite{row.at_99}, "99th percentile of each figure");
+  a("yield", row.yield, "share of devices whose highest rebound is within a height; the name is the height [m]");
 }
 
 template <class A>
 void members(A& a, DevicesFindings::Choice& choice) {
-  a("name", choice.name);
-  a("file", choice.file);
-  a("waveform", choice.waveform);
-  a("tau", choice.tau);
+  a("name", choice.name, "name of the choice; `default` is that of best.toml");
+  a("file", choice.file, "file with the waveform");
+  a("waveform", choice.waveform, "waveform family");
+  a("tau", choice.tau, "time until the contact force is steady, divided by that of the plain step");
 }
 
 template <class A>
 void members(A& a, DevicesFindings::StablePath& path) {
-  a("drives", path.drives);
-  a("share_of_devices", path.share);
-  a("reaches_V", path.reaches);
-  a("limit_V", path.limit);
-  a("touch_places_m", path.touch_places);
-  a("rise_s", path.rise);
+  a("drives", path.drives, "drives of the path; the first moves the switch to its contact");
+  a("share_of_devices", path.share, "share of devices with a stable path to the contact");
+  a("reaches_V", path.reaches, "voltage of the first drive at which the nominal design touches");
+  a("limit_V", path.limit, "limit of that voltage");
+  a("touch_places_m", path.touch_places, "width of the range of positions at which 90 % of the devices touch");
+  a("rise_s", path.rise, "least time before the first device touches under a slow waveform");
 }
 
 template <class A>
 void members(A& a, DevicesFindings::Courses& courses) {
-  a("end_s", courses.end);
-  a("unit_m", courses.unit);
-  a("plain_step", courses.step);
-  a("best", courses.own);
+  a("end_s", courses.end, "last instant of the gaps");
+  a("unit_m", courses.unit, "unit of the gaps");
+  a("plain_step", courses.step, "gaps under the plain step, by device and instant");
+  a("best", courses.own, "gaps under best.toml, by device and instant");
 }
 
 template <class A>
 void members(A& a, FrontPoint& point) {
-  a(key_of(&Metrics::initial_contact_time), point.first_touch);
-  a(key_of(&Metrics::largest_impact_velocity), point.impact_speed);
-  a("bounce_free", point.bounce_free);
-  a("candidate", point.candidate);
+  a(key_of(&Metrics::initial_contact_time), point.first_touch, "95th percentile of the first contact time");
+  a(key_of(&Metrics::largest_impact_velocity), point.impact_speed, "95th percentile of the impact velocity");
+  a("bounce_free", point.bounce_free, "share of bounce-free devices");
+  a("candidate", point.candidate, "waveform family, and measure of risk that was minimised");
 }
 
 template <class A>
 void members(A& a, CalibrationError& known) {
-  a("error", known.error);
-  a("bounce_free", known.bounce_free);
-  a(key_of(&Metrics::largest_impact_velocity), internal::OrInfinite{known.impact_speed});
+  a("error", known.error, "relative standard deviation of the error of the measured Vdp");
+  a("bounce_free", known.bounce_free, "share of bounce-free devices");
+  a(key_of(&Metrics::largest_impact_velocity), internal::OrInfinite{known.impact_speed},
+    "95th percentile of the impact velocity");
 }
 
 template <class A>
 void members(A& a, TournamentEntry& contender) {
-  a("measure", contender.measure);
-  a("waveform", contender.waveform);
-  a("closings", contender.closings);
-  a("cost", contender.cost);
-  a("bounce_free", contender.bounce_free);
+  a("measure", contender.measure, "minimised measure of risk; `drawing`: found on the nominal device");
+  a("waveform", contender.waveform, "waveform family");
+  a("closings", contender.closings, "number of closings of its search");
+  a("cost", contender.cost, "its cost on the devices on which the best is chosen");
+  a("bounce_free", contender.bounce_free, "share of these devices that are bounce-free");
 }
 
 template <class A>
 void members(A& a, DevicesFindings& devices) {
-  a("spread_assumed", devices.spread_assumed);
-  a("spread", devices.spread);
-  a("count", devices.count);
-  a("seed", devices.seed);
-  a("closings", devices.closings);
-  a.object("chosen", [&](auto& chosen) {
-    chosen("measure", devices.measure);
-    chosen("waveform", devices.waveform);
-  });
-  a("better_than_plain_step", devices.better_than_plain_step);
-  a("worse_in", devices.worse_in);
-  a("rows", devices.rows);
+  a("spread_assumed", devices.spread_assumed, "whether the scene has no [spread] and the usual one was assumed");
+  a("spread", devices.spread, "the process variation in words");
+  a("count", devices.count, "number of fresh devices");
+  a("seed", devices.seed, "seed of the devices");
+  a("closings", devices.closings, "number of closings of the search");
+  a.object(
+      "chosen",
+      [&](auto& chosen) {
+        chosen("measure", devices.measure, "minimised measure of risk");
+        chosen("waveform", devices.waveform, "waveform family");
+      },
+      "origin of the best waveform; empty texts if the plain step is best");
+  a("better_than_plain_step", devices.better_than_plain_step, "whether the best waveform is better than the plain step");
+  a("worse_in", devices.worse_in, "figures in which the best candidate is worse than a plain step that is best");
+  a("rows", devices.rows, "how waveforms do on the fresh devices");
   a.custom(
       "choices", devices.choices, [&](const auto&) { return internal::choices_json(devices); },
-      internal::JsonReader::read<std::vector<DevicesFindings::Choice>>);
-  a("stable_path", internal::OrNull{devices.stable_path});
-  a("goal_met", devices.goal_met);
-  a("missed_by_m", devices.missed_by);
-  a("step_delay_s", devices.step_delay);
-  a("gaps", devices.courses);
-  a("front", devices.front);
-  a("by_error_of_Vdp", devices.by_error);
-  a.custom("hold_window_V", devices.windows, internal::windows_json, internal::read_windows);
-  a("hold_window_devices", devices.windows.devices);
-  a("race", devices.tournament);
-  a("conditions", devices.conditions);
-  a("measured", devices.measured);
-  a("next_command", devices.next_command);
+      internal::JsonReader::read<std::vector<DevicesFindings::Choice>>,
+      internal::Like<std::vector<internal::ChoiceJson>>{"waveforms that are offered, the earliest steady contact first"});
+  a("stable_path", internal::OrNull{devices.stable_path}, "path of stable equilibria to the contact");
+  a("goal_met", devices.goal_met, "whether the 95th percentile of the rebound height is not significant");
+  a("missed_by_m", devices.missed_by, "excess of that percentile over the goal; 0: met");
+  a("step_delay_s", devices.step_delay, "delay of the plain step of the electrode, if it was searched");
+  a("gaps", devices.courses, "contact gaps of some devices over time");
+  a("front", devices.front, "candidate waveforms, by time of first contact");
+  a("by_error_of_Vdp", devices.by_error, "results by the error of a measured Vdp");
+  a.custom("hold_window_V", devices.windows, internal::windows_json, internal::read_windows,
+           internal::Like<std::map<std::string, std::array<double, 2>>>{
+               "by electrode, hold voltages between which the devices stay closed"});
+  a("hold_window_devices", devices.windows.devices, "number of devices in the hold window");
+  a("race", devices.tournament, "candidates for the best waveform, the best first");
+  a("conditions", devices.conditions, "conditions of the search");
+  a("measured", devices.measured, "row of the waveform in calibrated.toml");
+  a("next_command", devices.next_command, "command to run next");
 }
 
 template <class A>
 void members(A& a, SearchOfSeed& search) {
-  a("seed", search.seed);
-  a("status", search.status);
-  a("cost", search.cost);
-  a("evaluations", search.evaluations);
-  a("termination", search.termination);
-  a("goal_met", search.goal_met);
-  a("confirmed", search.confirmed);
-  a("better_than_baseline", search.better_than_baseline);
-  a.object("metrics", [&](auto& metrics) { metrics.figures(search.figures, internal::every_figure); });
+  a("seed", search.seed, "seed of the search");
+  a("status", search.status, "outcome of the search");
+  a("cost", search.cost, "its lowest cost");
+  a("evaluations", search.evaluations, "number of evaluations");
+  a("termination", search.termination, "why the search ended");
+  a("goal_met", search.goal_met, "whether the goal of the target is met");
+  a("confirmed", search.confirmed, "whether the confirmations agree");
+  a("better_than_baseline", search.better_than_baseline, "whether the waveform is better than the plain step");
+  a.object(
+      "metrics", [&](auto& metrics) { metrics.figures(search.figures, internal::every_figure); },
+      "figures under the found waveform");
 }
 
 template <class A>
 void members(A& a, SeedsFindings& seeds) {
-  a("planned", seeds.planned);
-  a("searches", seeds.searches);
+  a("planned", seeds.planned, "planned number of searches");
+  a("searches", seeds.searches, "completed searches, by seed");
   const auto seed_of = [&](std::size_t k) {
     return k < seeds.searches.size() ? nlohmann::json(seeds.searches[k].seed) : nlohmann::json();
   };
-  a.custom("best_seed", seeds.best, seed_of, [&](const nlohmann::json& seed) {
-    std::size_t best = seeds.searches.size();
-    while (best > 0 && seed_of(--best) != seed) {
-    }
-    return best;
-  });
+  a.custom(
+      "best_seed", seeds.best, seed_of,
+      [&](const nlohmann::json& seed) {
+        std::size_t best = seeds.searches.size();
+        while (best > 0 && seed_of(--best) != seed) {
+        }
+        return best;
+      },
+      internal::Like<std::uint64_t>{"seed of the best search"});
   if constexpr (!A::reads) {
-    const nlohmann::json summary = internal::seeds_summary(seeds);
-    for (const auto& [key, value] : summary.items()) a(key, value);
+    const internal::SeedsSummary summary = internal::seeds_summary(seeds);
+    a("goal_met", summary.goal_met, "number of searches that met the goal");
+    a("confirmed", summary.confirmed, "number of searches that were confirmed");
+    a("failed", summary.failed, "searches that failed");
+    a("cost", summary.cost, "costs of the searches");
+    a("metrics", summary.figures, "figures of the searches, by key");
   }
 }
 
 /// The members of a search are at the same level of the JSON as the members of the closing that the search found.
 template <class A>
 void members_of_search(A& a, SearchRecord& search, ClosingRecord& closing) {
-  a("target", search.target);
-  a("actuator", search.actuator);
-  a("waveform", search.waveform);
-  if (a.has(!search.families.empty())) a("families", search.families);
-  a("seed", search.seed);
-  a("optimizer", search.optimizer);
-  a("evaluations", internal::Count{search.evaluations});
-  a("termination", search.termination);
-  a("termination_message", search.termination_message);
-  a("goal_met", search.goal_met);
-  a("better_than_baseline", search.better_than_baseline);
-  a("plain_step_wins", search.plain_step_wins);
-  a("harder_than_step", search.harder_than_step);
-  a.object("baseline", [&](auto& baseline) {
-    members(baseline, search.baseline);
-    internal::figure_errors(baseline, search.baseline.errors);
-    baseline("cost", search.baseline.cost);
-  });
-  a.object("curves", [&](auto& curves) { curves("baseline", search.baseline.curve); });
-  a.object("search", [&](auto& course) {
-    course("value_name", search.course.value_name);
-    course.custom("best_so_far", search.course.best_so_far, internal::counted_json, internal::read_points);
-    if (course.has(!search.course.evaluations.empty()))
-      course.custom("evaluations", search.course.evaluations, internal::counted_json, internal::read_points);
-  });
-  a("reproduce", search.reproduce);
-  a("robust", search.robust);
-  a("devices", search.devices);
-  a("seeds", search.seeds);
+  a("target", search.target, "target of the search");
+  a("actuator", search.actuator, "drives that were searched");
+  a("waveform", search.waveform, "waveform family of the best waveform");
+  if (a.has(!search.families.empty())) a("families", search.families, "results by waveform family, if several were searched");
+  a("seed", search.seed, "seed of the search");
+  a("optimizer", search.optimizer, "optimizer");
+  a("evaluations", internal::Count{search.evaluations}, "number of evaluations");
+  a("termination", search.termination, "why the search ended");
+  a("termination_message", search.termination_message, "the same in words");
+  a("goal_met", search.goal_met, "whether the goal of the target is met");
+  a("better_than_baseline", search.better_than_baseline, "whether the best waveform is better than the plain step");
+  a("plain_step_wins", search.plain_step_wins, "whether the plain step has the lower cost");
+  a("harder_than_step", search.harder_than_step,
+    "factor by which the waveform exceeds the plain step in voltage or slew, the larger one");
+  a.object(
+      "baseline",
+      [&](auto& baseline) {
+        members(baseline, search.baseline);
+        internal::figure_errors(baseline, search.baseline.errors);
+        baseline("cost", search.baseline.cost, "cost of the run");
+      },
+      "run under the plain step");
+  a.object(
+      "curves", [&](auto& curves) { curves("baseline", search.baseline.curve, "run under the plain step"); },
+      "curves of the runs, in files only");
+  a.object(
+      "search",
+      [&](auto& course) {
+        course("value_name", search.course.value_name, "name of the minimised value");
+        course.custom("best_so_far", search.course.best_so_far, internal::counted_json, internal::read_points,
+                      internal::Like<std::vector<std::array<double, 2>>>{"evaluation, and least value until then"});
+        if (course.has(!search.course.evaluations.empty()))
+          course.custom("evaluations", search.course.evaluations, internal::counted_json, internal::read_points,
+                        internal::Like<std::vector<std::array<double, 2>>>{"evaluation, and its value; null: infeasible"});
+      },
+      "course of the search, in files only");
+  a("reproduce", search.reproduce, "commands that repeat the result");
+  a("robust", search.robust, "findings of a search by one measure of risk");
+  a("devices", search.devices, "findings of a search over devices");
+  a("seeds", search.seeds, "findings of several searches");
   if (search.devices) {
-    a.object("drawing", [&](auto& nominal) {
-      internal::figures_and_status(nominal, search.devices->nominal, search.devices->nominal_status, internal::every_figure);
-      nominal("goal_met", search.devices->nominal_goal_met);
-    });
+    a.object(
+        "drawing",
+        [&](auto& nominal) {
+          internal::figures_and_status(nominal, search.devices->nominal, search.devices->nominal_status, internal::every_figure);
+          nominal("goal_met", search.devices->nominal_goal_met, "whether the goal of the target is met");
+        },
+        "waveform for the nominal design, on the nominal device");
   }
-  a("limit", search.limit);
+  a("limit", search.limit, "least time for the impact velocity that was found");
   if (!a.has(closing.best.figures.has_value())) return;
-  a.object("best", [&](auto& best) {
-    best("parameters", search.parameters);
-    best("bounds", search.bounds);
-    best("cost", closing.best.cost);
-  });
-  a("checks", search.checks);
-  if (a.has(!search.checks.empty())) a("evaluations_with_more_modes", internal::Count{search.evaluations_of_modes});
+  a.object(
+      "best",
+      [&](auto& best) {
+        best("parameters", search.parameters, "parameters of the best waveform, by drive and name");
+        best("bounds", search.bounds, "bounds of each parameter in the search");
+        best("cost", closing.best.cost, "cost of the run");
+      },
+      "run under the best waveform, or the single run");
+  a("checks", search.checks, "repeated simulations that confirm the best waveform");
+  if (a.has(!search.checks.empty()))
+    a("evaluations_with_more_modes", internal::Count{search.evaluations_of_modes},
+      "number of further evaluations with several numbers of modes");
 }
 
 /// Members that are computed from other members are written in closing_json.cc.
 template <class A>
 void members(A& a, ClosingRecord& record) {
   members(a, record.origin);
-  a("status", record.status);
-  a.custom("pull_in", record.pull_in, internal::pull_in_json, internal::read_pull_in);
-  a("warnings", record.warnings);
-  a("title", record.title);
-  a("natural_frequencies_rad_s", record.natural_frequencies);
-  a("tolerance", record.tolerance);
-  if (a.has(!record.message.empty())) a("message", record.message);
-  a("effects", record.effects);
-  a.object("curves", [&](auto& curves) {
-    if (curves.has(record.best.figures.has_value())) curves("best", record.best.curve);
-  });
+  a("status", record.status, "outcome of the run, or `interrupted`");
+  a.custom("pull_in", record.pull_in, internal::pull_in_json, internal::read_pull_in,
+           internal::OneOrMore<PullInOfElectrode>{"pull-in voltages of the electrode"});
+  a("warnings", record.warnings, "warnings");
+  a("title", record.title, "title of the scene");
+  a("natural_frequencies_rad_s", record.natural_frequencies, "natural angular frequencies");
+  a("tolerance", record.tolerance, "relative tolerance of the integrator");
+  if (a.has(!record.message.empty())) a("message", record.message, "why the run is not done");
+  a("effects", record.effects, "effects that a coarse search left out");
+  a.object(
+      "curves",
+      [&](auto& curves) {
+        if (curves.has(record.best.figures.has_value()))
+          curves("best", record.best.curve, "run under the best waveform, or the single run");
+      },
+      "curves of the runs, in files only");
   if (a.has(record.best.figures.has_value())) {
-    a.object("metrics", [&](auto& metrics) {
-      if (metrics.reads) record.best.figures.emplace();
-      metrics.figures(*record.best.figures, internal::every_figure);
-    });
-    a.object("best", [&](auto& best) { members(best, record.best); });
+    a.object(
+        "metrics",
+        [&](auto& metrics) {
+          if (metrics.reads || !record.best.figures) record.best.figures.emplace();
+          metrics.figures(*record.best.figures, internal::every_figure);
+        },
+        "figures of the run under the best waveform, or of the single run");
+    a.object(
+        "best", [&](auto& best) { members(best, record.best); }, "run under the best waveform, or the single run");
     internal::figure_errors(a, record.best.errors);
   }
-  if (a.has(!record.contacts.empty())) a("contacts", record.contacts);
-  a("closed_state", record.closed_state);
-  a("work", record.work);
+  if (a.has(!record.contacts.empty())) a("contacts", record.contacts, "figures of each of several contacts");
+  a("closed_state", record.closed_state, "closed equilibrium under the hold levels");
+  a("work", record.work, "cost of the simulation");
   if constexpr (A::reads) {
     if (internal::is_of_search(a.whole())) record.search.emplace();
-    a.object("certified", [&](auto&) { record.certificate.emplace(); });
+    a.object(
+        "certified", [&](auto&) { record.certificate.emplace(); },
+        "ill-conditioned figures over perturbed runs, with `--certify`");
   }
   if (record.search) members_of_search(a, *record.search, record);
   if (!record.certificate) return;
-  a.custom("certified", record.certificate->ill_conditioned, internal::certified_json, internal::read_certified);
-  a.object("cloud", [&](auto& cloud) {
-    cloud("runs", record.certificate->runs);
-    cloud("grazing_rebound", internal::OrNull{record.certificate->grazing});
-  });
+  a.custom("certified", record.certificate->ill_conditioned, internal::certified_json, internal::read_certified,
+           internal::Like<std::map<std::string, Spread>>{"ill-conditioned figures over perturbed runs, with `--certify`"});
+  a.object(
+      "cloud",
+      [&](auto& cloud) {
+        cloud("runs", record.certificate->runs, "number of runs");
+        cloud("grazing_rebound", internal::OrNull{record.certificate->grazing}, "rebound that makes the figures ill-conditioned");
+      },
+      "perturbed runs of `--certify`");
 }
 
 }  // namespace softland

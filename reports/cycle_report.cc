@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "document/quantity.h"
 #include "document/svg.h"
 #include "reports/closing_charts.h"
+#include "reports/member_lister.h"
 #include "reports/side_view.h"
 #include "reports/study_members.h"
 #include "sampling/statistics.h"
@@ -190,64 +192,67 @@ ReportTable cycles_table(const CycleRecord::Drive& drive, const std::string& nam
 
 template <class A>
 void members(A& a, CycleRecord::Devices& d) {
-  a("count", d.count);
-  a("largest_rate_5_Hz", d.at_5);
-  a("largest_rate_50_Hz", d.at_50);
-  a("largest_rate_95_Hz", d.at_95);
-  a("steady_at_rate", d.steady);
+  a("count", d.count, "number of devices");
+  a("largest_rate_5_Hz", d.at_5, "5th percentile of the largest rate with steady cycles");
+  a("largest_rate_50_Hz", d.at_50, "median of that rate");
+  a("largest_rate_95_Hz", d.at_95, "95th percentile of that rate");
+  a("steady_at_rate", d.steady, "share of devices with steady cycles at `rate_Hz`");
 }
 
 template <class A>
 void members(A& a, CycleRecord::Cycle& cycle) {
   members(a, cycle.metrics);
-  a(key_of(&Metrics::largest_impact_velocity), cycle.metrics.largest_impact_velocity);
-  a("on_time_s", cycle.on_time);
+  a(key_of(&Metrics::largest_impact_velocity), cycle.metrics.largest_impact_velocity,
+    "largest impact velocity of all touches of the cycle");
+  a("on_time_s", cycle.on_time, "time in which the switch is electrically closed");
 }
 
 template <class A>
 void members(A& a, CycleRecord::Drive& d) {
-  a("name", d.name);
-  a("largest_rate_Hz", d.largest);
-  a("windows_Hz", d.windows);
-  a("steady_rates_Hz", d.steady_rates);
-  a("other_rates_Hz", d.other_rates);
-  a("devices", internal::OrNull{d.devices});
-  a("status", d.status);
-  a("message", d.message);
-  a("cycles", d.cycles);
-  a("waveforms", d.waveforms);
+  a("name", d.name, "pair of a closing and an opening waveform");
+  a("largest_rate_Hz", d.largest, "largest rate with steady cycles");
+  a("windows_Hz", d.windows, "ranges of higher rates with steady cycles");
+  a("steady_rates_Hz", d.steady_rates, "simulated rates with steady cycles");
+  a("other_rates_Hz", d.other_rates, "simulated rates without");
+  a("devices", internal::OrNull{d.devices}, "rates under process variation");
+  a("status", d.status, "outcome of the run at `rate_Hz`");
+  a("message", d.message, "why the run is not done");
+  a("cycles", d.cycles, "figures of each cycle");
+  a("waveforms", d.waveforms, "waveform of one cycle by drive: time [s], level [V]");
 }
 
 template <class A>
 void members(A& a, CycleRecord::Course& course) {
-  a("time_s", course.time);
-  a("tip_gap_m", course.gap);
-  a.custom("closed", course.closed, internal::closed_json, internal::read_closed);
+  a("time_s", course.time, "time since the start of the run");
+  a("tip_gap_m", course.gap, "gap of the contact");
+  a.custom("closed", course.closed, internal::closed_json, internal::read_closed,
+           internal::Like<std::vector<std::array<double, 3>>>{
+               "times in which the contact is closed: begin [s], end [s] (null: to the end of the run), touches"});
 }
 
 template <class A>
 void members(A& a, CycleRecord::Search& search) {
-  a("target", search.target);
-  a("family", search.family);
-  a("evaluations", search.evaluations);
-  a("cost", search.cost);
-  a("plain_cost", search.plain_cost);
-  a("parameters", search.parameters);
+  a("target", search.target, "target of the search");
+  a("family", search.family, "waveform family of the closing waveform");
+  a("evaluations", search.evaluations, "number of evaluations");
+  a("cost", search.cost, "cost of the found pair");
+  a("plain_cost", search.plain_cost, "cost of the plain steps");
+  a("parameters", search.parameters, "parameters of the found waveforms");
 }
 
 template <class A>
 void members(A& a, CycleRecord& r) {
   members(a, r.origin);
-  a("status", r.status);
-  a("rate_Hz", r.rate);
-  a("duty", r.duty);
-  a("cycles", r.cycles);
-  a("seed", r.seed);
-  a("contact_gap_m", r.contact_gap);
-  a("drives", r.drives);
-  if (a.has(r.search.has_value())) a("search", r.search);
-  a("warnings", r.warnings);
-  if (a.has(!r.curves.empty())) a("curves", r.curves);
+  a("status", r.status, "`done` or `interrupted`");
+  a("rate_Hz", r.rate, "cycle rate");
+  a("duty", r.duty, "share of the cycle in which the switch is commanded closed");
+  a("cycles", r.cycles, "number of simulated cycles");
+  a("seed", r.seed, "seed of devices and search");
+  a("contact_gap_m", r.contact_gap, "rest gap of the contact");
+  a("drives", r.drives, "results by pair of waveforms, the plain steps first");
+  if (a.has(r.search.has_value())) a("search", r.search, "search of the waveforms, if they were not given");
+  a("warnings", r.warnings, "warnings of the scene");
+  if (a.has(!r.curves.empty())) a("curves", r.curves, "gap over time by pair of waveforms, in files only");
 }
 
 CycleRecord record_of(const PreparedScene& given, const Cycling& cycling, const std::string& command) {
@@ -299,6 +304,11 @@ std::string cycle_csv(const CycleSearchResult& found) {
     if (names[k] != dispersion_drive) driven.emplace(names[k], signals[k]);
   }
   return csv(driven, once.period);
+}
+
+template <>
+std::vector<JsonMember> json_members<CycleRecord>() {
+  return internal::listed<CycleRecord>();
 }
 
 json json_of(const CycleRecord& record) { return internal::record_json(record); }

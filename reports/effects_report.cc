@@ -13,6 +13,7 @@
 #include "document/json_number.h"
 #include "document/quantity.h"
 #include "reports/closing_captions.h"
+#include "reports/member_lister.h"
 #include "reports/study_members.h"
 
 namespace softland {
@@ -136,34 +137,44 @@ std::vector<std::string> warnings_of(const Effects& effects) {
 
 template <class A>
 void members(A& a, Effect& effect) {
-  a("section", effect.section);
-  a("choice", effect.choice);
-  a("in_scene", effect.in_scene);
-  a("status", effect.metrics.status);
-  a("magnitude", effect.magnitude);
-  a("dimensionless_group", effect.group);
-  a("metrics", effect.metrics);
-  a("rhs_s", effect.rhs_seconds);
-  a("warnings", effect.warnings);
-  a("followed_until_s", effect.end);
+  a("section", effect.section, "section of the law, such as `gas`");
+  a("choice", effect.choice, "name of the law; `none`: left out");
+  a("in_scene", effect.in_scene, "whether it is that of the scene");
+  a("status", effect.metrics.status, "outcome of the closing");
+  a("magnitude", effect.magnitude, "size of the effect");
+  a("dimensionless_group", effect.group, "group that decides whether the law is valid");
+  a("metrics", effect.metrics, "figures of the closing");
+  a("rhs_s", effect.rhs_seconds, "computing time per evaluation of the right-hand side");
+  a("warnings", effect.warnings, "warnings of the closing");
+  a("followed_until_s", effect.end, "time at which a costly closing was stopped");
 }
 
 template <class A>
 void members(A& a, NotCompared& law) {
-  a("choice", law.choice);
-  a("reason", law.reason);
+  a("choice", law.choice, "name of the law");
+  a("reason", law.reason, "why it cannot be compared");
 }
 
 template <class A>
 void members(A& a, EffectAblation& one) {
-  a("effect", one.what.effect);
-  a("choice", one.what.choice);
-  a("magnitude", one.what.magnitude);
-  a("dimensionless_group", one.what.group);
-  a("metrics", one.metrics);
-  a("influence", one.influence);
-  a("rhs_s", one.rhs_seconds);
-  a("followed_until_s", one.end);
+  a("effect", one.what.effect, "name of the effect");
+  a("choice", one.what.choice, "what the scene has");
+  a("magnitude", one.what.magnitude, "size of the effect");
+  a("dimensionless_group", one.what.group, "group that decides whether the effect matters");
+  a("metrics", one.metrics, "figures of the closing without it");
+  a("influence", one.influence, "largest relative change of a figure");
+  a("rhs_s", one.rhs_seconds, "computing time per evaluation of the right-hand side");
+  a("followed_until_s", one.end, "time at which a costly closing was stopped");
+}
+
+// The JSON of compared_json().
+template <class Closing>
+struct ComparedJson {};
+template <class A, class Closing>
+void members(A& a, ComparedJson<Closing>&) {
+  Closing closing;
+  members(a, closing);
+  a("relative_change", std::map<std::string, double>{}, "relative change of each compared figure from the closing of the scene");
 }
 
 template <class A>
@@ -171,19 +182,30 @@ void members(A& a, EffectsRecord& record) {
   Effects& found = record.found;
   members(a, record.origin);
   const auto compared = [&](const auto& closings) { return compared_json(closings, found.own("gas").metrics); };
-  a.custom("effects", found.list, compared, internal::JsonReader::read<std::vector<Effect>>);
+  a.custom("effects", found.list, compared, internal::JsonReader::read<std::vector<Effect>>,
+           internal::Like<std::vector<ComparedJson<Effect>>>{"closings with each law"});
   require(std::ranges::any_of(found.list, [](const Effect& e) { return e.in_scene && e.section == "gas"; }),
           "\"effects\" lacks the gas of the scene");
-  a.custom("left_out", found.ablations, compared, internal::JsonReader::read<std::vector<EffectAblation>>);
-  a("not_compared", found.not_compared);
-  a("duration_s", found.window);
+  a.custom("left_out", found.ablations, compared, internal::JsonReader::read<std::vector<EffectAblation>>,
+           internal::Like<std::vector<ComparedJson<EffectAblation>>>{"closings without each effect"});
+  a("not_compared", found.not_compared, "laws that are impossible for the scene");
+  a("duration_s", found.window, "simulated time");
   a.custom(
       "status", found.interrupted,
       [&](bool stopped) { return json(to_string(stopped ? Status::interrupted : found.own("gas").metrics.status)); },
-      [](const json& status) { return status == to_string(Status::interrupted); });
+      [](const json& status) { return status == to_string(Status::interrupted); },
+      internal::Like<std::string>{"outcome of the closing of the scene, or `interrupted`"});
   std::map<std::string, double> spread;
   for (const Figure& f : compared_figures) spread[std::string(f.quantity())] = found.spread("gas", f);
-  a.derived("relative_spread", std::map<std::string, std::map<std::string, double>>{{"gas", std::move(spread)}});
+  a.derived("relative_spread", std::map<std::string, std::map<std::string, double>>{{"gas", std::move(spread)}},
+            "by section, range of each figure over the laws, relative to that of the scene");
+}
+
+template <>
+std::vector<JsonMember> json_members<EffectsRecord>() {
+  EffectsRecord record;
+  record.found.list.push_back({.section = "gas", .in_scene = true});
+  return internal::listed(record);
 }
 
 json json_of(const EffectsRecord& record) { return internal::record_json(record); }

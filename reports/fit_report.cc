@@ -14,6 +14,7 @@
 #include "base/require.h"
 #include "document/quantity.h"
 #include "reports/fit_text.h"
+#include "reports/member_lister.h"
 #include "reports/study_members.h"
 
 namespace softland {
@@ -289,97 +290,97 @@ struct Prior {
 };
 template <class A>
 void members(A& a, Prior& prior) {
-  a("mean", prior.mean);
-  a("standard_deviation", prior.deviation);
+  a("mean", prior.mean, "mean of the prior");
+  a("standard_deviation", prior.deviation, "standard deviation of the prior");
 }
 
 }  // namespace internal
 
 template <class A>
 void members(A& a, FittedUnknown& u) {
-  a("key", u.name);
-  a("unit", u.unit);
-  a("nominal", u.nominal);
-  a("value", u.value);
-  a("standard_error", u.standard_error);
-  a.pair("interval95", u.low, u.high);
-  a("scale", u.scale);
+  a("key", u.name, "entry of [spread], or key of the scene");
+  a("unit", u.unit, "its unit; empty for a factor");
+  a("nominal", u.nominal, "value in the given scene");
+  a("value", u.value, "fitted value");
+  a("standard_error", u.standard_error, "its standard error");
+  a.pair("interval95", u.low, u.high, "95 % interval of the value");
+  a("scale", u.scale, "change of the value when the scaled unknown changes by 1");
   std::optional<internal::Prior> prior;
   if (std::isfinite(u.prior_mean)) prior = {u.prior_mean, u.prior_deviation};
-  a("prior", internal::OrNull{prior});
+  a("prior", internal::OrNull{prior}, "knowledge before the fit");
   if (prior) u.prior_mean = prior->mean, u.prior_deviation = prior->deviation;
-  if (a.has(!u.device.empty())) a("device", u.device);
+  if (a.has(!u.device.empty())) a("device", u.device, "device to which the unknown belongs, if there are several");
 }
 
 template <class A>
 void members(A& a, NextMeasurement& next) {
-  a("quantity", internal::Chosen{next.what, measurables});
-  a("name", next.name);
-  a("level_V", internal::OrNull{next.level});
-  a("error", next.error);
-  a("reduction", next.reduction);
+  a("quantity", internal::Chosen{next.what, measurables}, "measured quantity");
+  a("name", next.name, "the measurement in words");
+  a("level_V", internal::OrNull{next.level}, "voltage at which it is made");
+  a("error", next.error, "assumed standard deviation of its error [SI unit]");
+  a("reduction", next.reduction, "relative decrease of all standard errors");
 }
 
 template <class A>
 void members(A& a, FitResidual& r) {
-  a("measurement", r.measurement);
-  a("quantity", internal::Chosen{r.what, measurables});
-  a("drive", r.drive);
-  a.derived("unit", std::string(row_of(r.what).unit));
-  a("measured", r.measured);
-  a("error", r.error);
-  a("before", r.before);
-  a("after", r.after);
-  a.derived("normalized", r.normalized());
-  if (a.has(!r.device.empty())) a("device", r.device);
-  a("level_V", r.level);
-  a("time_s", r.time);
+  a("measurement", r.measurement, "number of the measurement in the bench file");
+  a("quantity", internal::Chosen{r.what, measurables}, "measured quantity");
+  a("drive", r.drive, "drive of the measurement");
+  a.derived("unit", std::string(row_of(r.what).unit), "unit of the values");
+  a("measured", r.measured, "measured value");
+  a("error", r.error, "its error");
+  a("before", r.before, "value in the given scene");
+  a("after", r.after, "value in the fitted scene");
+  a.derived("normalized", r.normalized(), "difference after the fit, divided by the error");
+  if (a.has(!r.device.empty())) a("device", r.device, "device of the measurement, if there are several");
+  a("level_V", r.level, "voltage of the measurement");
+  a("time_s", r.time, "time of the row of a curve");
 }
 
 template <class A>
 void members(A& a, FittedTrace& trace) {
-  a("measurement", trace.measurement);
-  a("quantity", internal::Chosen{trace.what, measurables});
-  a("until_s", trace.until);
-  a("recorded_s", trace.recorded);
+  a("measurement", trace.measurement, "number of the measurement in the bench file");
+  a("quantity", internal::Chosen{trace.what, measurables}, "measured quantity");
+  a("until_s", trace.until, "time of the last row that the fit uses");
+  a("recorded_s", trace.recorded, "time of the last recorded row");
 }
 
 template <class A>
 void members(A& a, FitRecord::Population::Variable& variable) {
-  a("key", variable.key);
-  a("mean", variable.mean);
-  a("standard_deviation", variable.deviation);
+  a("key", variable.key, "entry of [spread]");
+  a("mean", variable.mean, "mean over the devices");
+  a("standard_deviation", variable.deviation, "standard deviation over the devices");
 }
 
 template <class A>
 void members(A& a, FitRecord::Population& population) {
-  a("variables", population.variables);
-  a("correlation", population.correlation);
+  a("variables", population.variables, "quantities that differ between devices");
+  a("correlation", population.correlation, "their correlation");
 }
 
 template <class A>
 void members(A& a, FitRecord& fit) {
   members(a, fit.origin);
-  a("status", fit.status);
-  a("doubts", fit.doubts);
-  a("title", fit.title);
-  a("unknowns", fit.unknowns);
-  a("correlation", fit.correlation);
-  a("indistinguishable", fit.indistinguishable);
-  a("next_measurement", fit.next);
-  a("minima", fit.minima);
-  a("starts", fit.starts);
-  a("converged", fit.converged);
-  a("residuals", fit.residuals);
-  a("traces", fit.traces);
-  a("chi_squared", fit.chi_squared);
-  a("chi_squared_before", fit.chi_squared_before);
-  a("words", fit.words);
-  a("spread_assumed", fit.spread_assumed);
-  a("loss", internal::Chosen{fit.loss, losses});
-  a("seed", fit.seed);
-  a("tolerance", fit.tolerance);
-  a("population", fit.population);
+  a("status", fit.status, "`done`, `not_believed` or `numerical_failure`");
+  a("doubts", fit.doubts, "reasons to doubt the fit, in words");
+  a("title", fit.title, "title of the scene");
+  a("unknowns", fit.unknowns, "fitted quantities");
+  a("correlation", fit.correlation, "correlation of the unknowns");
+  a("indistinguishable", fit.indistinguishable, "groups of unknowns that the data cannot tell apart");
+  a("next_measurement", fit.next, "measurements that would help most");
+  a("minima", fit.minima, "number of minima that were found");
+  a("starts", fit.starts, "number of starts");
+  a("converged", fit.converged, "number of starts that converged");
+  a("residuals", fit.residuals, "measurements beside the model");
+  a("traces", fit.traces, "curves of which the fit uses a part");
+  a("chi_squared", fit.chi_squared, "chi squared after the fit");
+  a("chi_squared_before", fit.chi_squared_before, "chi squared of the given scene");
+  a("words", fit.words, "the fit in words");
+  a("spread_assumed", fit.spread_assumed, "whether the scene has no [spread] and the usual one was assumed");
+  a("loss", internal::Chosen{fit.loss, losses}, "loss of the residuals");
+  a("seed", fit.seed, "seed of the starts");
+  a("tolerance", fit.tolerance, "relative tolerance of the integrator");
+  a("population", fit.population, "statistics of several fitted devices");
 }
 
 FitRecord record_of(const Fit& fit, const std::string& command) {
@@ -416,6 +417,11 @@ FitRecord record_of(const Fit& fit, const std::string& command) {
       population.variables.push_back({found->names[i], found->mean[i], found->deviation[i]});
   }
   return record;
+}
+
+template <>
+std::vector<JsonMember> json_members<FitRecord>() {
+  return internal::listed<FitRecord>();
 }
 
 json json_of(const FitRecord& record) { return internal::record_json(record); }

@@ -14,6 +14,7 @@
 #include "document/svg.h"
 #include "reports/closing_charts.h"
 #include "reports/closing_record.h"
+#include "reports/member_lister.h"
 #include "reports/record_file.h"
 #include "reports/study_members.h"
 #include "studies/closing/summits_at_hold.h"
@@ -145,68 +146,72 @@ std::string quasi_static_prose(const LimitRecord& limit) {
 
 template <class A>
 void members(A& a, LeastTime& least) {
-  a("status", least.status);
-  a("message", least.message);
-  a("from_start", least.from_start);
-  a("least_time_s", least.time);
-  a(key_of(&Metrics::impact_velocity), least.impact_velocity);
-  a("permitted_impact_velocity_m_s", least.permitted);
-  a("peak_voltage_V", least.peak);
-  a("simulated_time_s", least.simulated_time);
-  a("simulated_impact_velocity_m_s", least.simulated_velocity);
-  a("distance_from_rest", least.distance);
+  a("status", least.status, "outcome of the search for the least time");
+  a("message", least.message, "why it is not done");
+  a("from_start", least.from_start, "whether it was found from the given waveform");
+  a("least_time_s", least.time, "least time until the first contact");
+  a(key_of(&Metrics::impact_velocity), least.impact_velocity, "speed of the contact point at the first contact");
+  a("permitted_impact_velocity_m_s", least.permitted, "largest permitted speed");
+  a("peak_voltage_V", least.peak, "permitted voltage of the electrode");
+  a("simulated_time_s", least.simulated_time, "time of the first contact in a simulation");
+  a("simulated_impact_velocity_m_s", least.simulated_velocity, "speed of the first contact in a simulation");
+  a("distance_from_rest", least.distance, "largest difference of a mode from its closed equilibrium, in contact gaps");
 }
 
 template <class A>
 void members(A& a, LimitRecord::QuasiStatic& found) {
-  a("drive", found.drive);
-  a("touch_places_m", found.touch_places);
-  a("steady_s", found.steady);
-  a("speed_m_s", found.speed);
+  a("drive", found.drive, "drive of the slow waveform");
+  a("touch_places_m", found.touch_places, "width of the range of positions at which 90 % of the devices touch");
+  a("steady_s", found.steady, "time from which the force is steady under the plain step");
+  a("speed_m_s", found.speed, "least impact velocity of such a waveform");
 }
 
 template <class A>
 void members(A& a, LimitRecord::Check& check) {
-  a("name", check.name);
-  a("metrics", check.metrics);
+  a("name", check.name, "what differs in the repeated simulation");
+  a("metrics", check.metrics, "its figures");
 }
 
 template <class A>
 void members(A& a, LimitRecord::Landing& landing) {
-  a("way", landing.path);
-  a("at_rest", landing.at_rest);
-  a("catch_delay_s", landing.catch_delay);
-  a("catch_s", landing.catch_time);
-  a("bounce_free", landing.bounce_free);
-  a("metrics", landing.metrics);
-  a("confirmed_by", landing.checks);
-  a("scene", landing.scene);
+  a("way", landing.path, "least time of this landing");
+  a("at_rest", landing.at_rest, "whether all modes end at rest");
+  a("catch_delay_s", landing.catch_delay, "time from first contact to the pull that keeps the switch closed");
+  a("catch_s", landing.catch_time, "time from first contact to the hold levels");
+  a("bounce_free", landing.bounce_free, "whether the closing is bounce-free");
+  a("metrics", landing.metrics, "figures of the closing");
+  a("confirmed_by", landing.checks, "repeated simulations");
+  a("scene", landing.scene, "scene with its waveforms");
 }
 
 template <class A>
 void members(A& a, LimitRecord& limit) {
   members(a, limit.origin);
-  a("status", limit.status);
-  a("actuator", internal::Chosen{limit.actuator, actuators});
-  a("permitted_impact_velocity_m_s", limit.impact_velocity);
-  a("modes", limit.modes);
-  a("has_start", limit.has_start);
-  a("plain_step", limit.step);
-  a("touch", limit.touch);
-  a("at_rest", limit.rest);
-  a("quasi_static", internal::OrNull{limit.quasi_static});
-  a("closed_state", limit.closed_state);
-  a("hold_warning", internal::OrNull{limit.hold_warning});
-  a("warnings", limit.warnings);
-  a("landing", internal::OrNull{limit.landing});
-  a("over_impact_velocity", limit.over_velocity);
-  a("over_peak_voltage", limit.over_peak);
+  a("status", limit.status, "outcome of the search for the least time, or `interrupted`");
+  a("actuator", internal::Chosen{limit.actuator, actuators}, "controlled drives");
+  a("permitted_impact_velocity_m_s", limit.impact_velocity, "largest permitted impact velocity");
+  a("modes", limit.modes, "number of modes");
+  a("has_start", limit.has_start, "whether the search started from a given waveform");
+  a("plain_step", limit.step, "figures of the plain step");
+  a("touch", limit.touch, "least time to touch at the permitted velocity");
+  a("at_rest", limit.rest, "least time to touch with all modes at rest");
+  a("quasi_static", internal::OrNull{limit.quasi_static}, "least impact velocity of a slow waveform");
+  a("closed_state", limit.closed_state, "closed equilibrium under the hold levels");
+  a("hold_warning", internal::OrNull{limit.hold_warning}, "warning that the hold levels do not keep the switch closed");
+  a("warnings", limit.warnings, "warnings");
+  a("landing", internal::OrNull{limit.landing}, "closing of the least time that lands");
+  a("over_impact_velocity", limit.over_velocity, "least time over the permitted velocity");
+  a("over_peak_voltage", limit.over_peak, "least time over the permitted voltage");
   if (!a.has(limit.landed.has_value())) return;
-  a.object("curves", [&](auto& curves) {
-    curves.custom(
-        "landing", limit.landed, [](const auto& run) { return json_of(*run); },
-        [](const json& run) { return std::optional(read_closing(run)); });
-  });
+  a.object(
+      "curves",
+      [&](auto& curves) {
+        curves.custom(
+            "landing", limit.landed, [](const auto& run) { return json_of(*run); },
+            [](const json& run) { return std::optional(read_closing(run)); },
+            internal::Written{"record of [simulate](#simulate)", "the closing that lands"});
+      },
+      "curves of the run, in files only");
 }
 
 LimitRecord record_of(const Limit& limit, const std::string& command) {
@@ -248,6 +253,13 @@ LimitRecord record_of(const Limit& limit, const std::string& command) {
     }
   }
   return record;
+}
+
+template <>
+std::vector<JsonMember> json_members<LimitRecord>() {
+  LimitRecord record;
+  record.landed.emplace();
+  return internal::listed(record);
 }
 
 json json_of(const LimitRecord& record) { return internal::record_json(record); }

@@ -9,6 +9,7 @@
 #include "document/document.h"
 #include "document/quantity.h"
 #include "reports/estimates.h"
+#include "reports/member_lister.h"
 #include "reports/study_members.h"
 #include "sampling/statistics.h"
 
@@ -65,44 +66,45 @@ ReportTable figures_table(const MeasurementsRecord& record) {
 
 template <class A>
 void members(A& a, MeasurementsRecord::Figure& figure) {
-  a("name", figure.name);
-  a("unit", figure.unit);
-  a("nominal", figure.nominal);
-  a("variation", figure.variation);
-  a("error", figure.error);
-  a("devices", figure.devices);
+  a("name", figure.name, "name of the figure");
+  a("unit", figure.unit, "its unit");
+  a("nominal", figure.nominal, "value of the nominal design");
+  a("variation", figure.variation, "standard deviation over the devices divided by the mean");
+  a("error", figure.error, "relative error of its measurement");
+  a("devices", figure.devices, "number of devices that have it");
 }
 
 template <class A>
 void members(A& a, MeasurementsRecord::Row& row) {
   Prediction& p = row.found;
-  a("name", p.name);
-  a("measured", row.measured);
-  a("volts_miss", p.volts_miss);
-  a("time_miss", p.time_miss);
-  a("volts_unexplained", p.volts_unexplained);
-  a("time_unexplained", p.time_unexplained);
-  a("piezo_miss", p.piezo_miss);
-  a("piezo_unexplained", p.piezo_unexplained);
+  a("name", p.name, "what is measured, in words");
+  a("measured", row.measured, "names of the measured figures");
+  a("volts_miss", p.volts_miss, "RMS error of the logarithm of the factor of voltage");
+  a("time_miss", p.time_miss, "RMS error of the logarithm of the factor of time");
+  a("volts_unexplained", p.volts_unexplained, "share of the variance of the factor of voltage that stays");
+  a("time_unexplained", p.time_unexplained, "share of the variance of the factor of time that stays");
+  a("piezo_miss", p.piezo_miss, "RMS error of the logarithm of the factor of piezo voltage");
+  a("piezo_unexplained", p.piezo_unexplained, "share of the variance of the factor of piezo voltage that stays");
   if constexpr (A::reads) p.is_judged = a.at("bounce_free").is_object();
-  if (!p.is_judged) return;
-  a("score_95", p.score);
-  a("bounce_free", p.bounce_free);
-  a("largest_impact_velocity_95_m_s", p.impact_speed);
-  a("major_bounce_height_95_m", p.rebound_height);
+  if (!a.has(p.is_judged)) return;
+  a("score_95", p.score, "95th percentile of the cost of `bounce`");
+  a("bounce_free", p.bounce_free, "bounce-free devices");
+  a("largest_impact_velocity_95_m_s", p.impact_speed, "95th percentile of the impact velocity");
+  a("major_bounce_height_95_m", p.rebound_height, "95th percentile of the highest rebound");
 }
 
 template <class A>
 void members(A& a, MeasurementsRecord& record) {
   members(a, record.origin);
-  a("status", internal::Stopped{record.interrupted});
-  a("devices", record.devices);
-  a("seed", record.seed);
-  a("spread_assumed", record.spread_assumed);
-  a("drives_piezo", record.drives_piezo);
-  a("figures", record.figures);
-  a("references", record.references);
-  a("predictions", record.predictions);
+  a("status", internal::Stopped{record.interrupted}, "`done` or `interrupted`");
+  a("devices", record.devices, "number of devices");
+  a("seed", record.seed, "seed of the devices");
+  a("spread_assumed", record.spread_assumed, "whether the scene has no [spread] and the usual one was assumed");
+  a("drives_piezo", record.drives_piezo, "whether the waveform drives a piezo");
+  a("figures", record.figures, "figures that may be measured");
+  a("references", record.references,
+    "for comparison: no measurement, Vdp and period, all figures, and the best factors of each device");
+  a("predictions", record.predictions, "measurements, the best first");
 }
 
 MeasurementsRecord record_of(const IdentificationStudy& study, const IdentificationOptions& options, const std::string& command) {
@@ -124,6 +126,11 @@ MeasurementsRecord record_of(const IdentificationStudy& study, const Identificat
   };
   record.references = rows(study.references), record.predictions = rows(study.predictions);
   return record;
+}
+
+template <>
+std::vector<JsonMember> json_members<MeasurementsRecord>() {
+  return internal::listed<MeasurementsRecord>();
 }
 
 json json_of(const MeasurementsRecord& record) { return internal::record_json(record); }

@@ -14,6 +14,7 @@
 #include "document/document.h"
 #include "document/quantity.h"
 #include "document/svg.h"
+#include "reports/member_lister.h"
 #include "reports/study_members.h"
 
 namespace softland {
@@ -135,36 +136,43 @@ ModesRecord record_of(const ModeTable& table, const std::string& command) {
 
 template <class A>
 void members(A& a, ModesRecord::Mode& mode) {
-  a("number", mode.number);
-  a("frequency_Hz", mode.frequency);
-  a("kind", mode.kind);
-  a("share", mode.share);
-  a("taken_as", internal::OrNull{mode.taken_as});
+  a("number", mode.number, "number of the mode in the file");
+  a("frequency_Hz", mode.frequency, "its frequency");
+  a("kind", mode.kind, "kind of the motion, such as bending");
+  a("share", mode.share, "share of this kind in the squared motion of all nodes");
+  a("taken_as", internal::OrNull{mode.taken_as}, "column in the table of modes; null: left out");
 }
 
 template <class A>
 void members(A& a, ModesRecord::File& file) {
-  a("summary", file.summary);
-  a("format", file.format);
-  a("nodes", file.nodes);
-  a("length_m", file.length);
-  a("modes", file.modes);
-  a("left_out", file.left_out);
-  a("notes", file.notes);
+  a("summary", file.summary, "the file in one line");
+  a("format", file.format, "format of the file");
+  a("nodes", file.nodes, "number of nodes; 0 for a table of modes");
+  a("length_m", file.length, "length of the beam");
+  a("modes", file.modes, "modes of the file");
+  a("left_out", file.left_out, "data that were not read");
+  a("notes", file.notes, "assumptions");
 }
 
 // In JSON, the members of ModesRecord::file are at the top level.
 template <class A>
 void members(A& a, ModesRecord& record) {
   members(a, record.origin);
-  a("natural_frequencies_rad_s", record.frequencies);
+  a("natural_frequencies_rad_s", record.frequencies, "natural angular frequencies");
   if constexpr (A::reads) {
     if (a.at("format").is_string()) record.file.emplace();
   }
   if (record.file)
     members(a, *record.file);
   else
-    a("warnings", record.warnings);
+    a("warnings", record.warnings, "warnings of the scene");
+}
+
+template <>
+std::vector<JsonMember> json_members<ModesRecord>() {
+  std::vector<JsonMember> all = internal::listed<ModesRecord>();
+  internal::add_members(all, internal::listed(ModesRecord{.file = ModesRecord::File{}}));
+  return all;
 }
 
 nlohmann::json json_of(const ModesRecord& record) { return internal::record_json(record); }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,26 +23,30 @@ namespace internal {
 
 template <class A>
 void members(A& a, PullInRecord& found) {
-  a("static_V", found.static_pull_in);
-  a("static_kind", internal::OrNull{found.static_kind});
-  a("deflection_m", found.deflection);
-  a("dynamic_V", found.dynamic_pull_in);
-  a("dynamic_kind", internal::OrNull{found.dynamic_kind});
-  a("release_V", found.release);
-  a("pulled_through_V", found.pulled_through);
-  if (a.has(std::isfinite(found.neutral))) a("neutral_V", found.neutral);
-  a.custom("by_modes", found.by_modes, internal::voltages_by_modes_json, internal::read_voltages_by_modes);
+  a("static_V", found.static_pull_in, "static pull-in voltage");
+  a("static_kind", internal::OrNull{found.static_kind}, "how the stable equilibrium ends: `fold` or `contact`");
+  a("deflection_m", found.deflection, "deflection of the contact point at the static voltage");
+  a("dynamic_V", found.dynamic_pull_in, "dynamic pull-in voltage");
+  a("dynamic_kind", internal::OrNull{found.dynamic_kind},
+    "`overshoot`; `overdamped`: equals the static voltage; `unstable_rest`: no step moves the switch");
+  a("release_V", found.release, "release voltage");
+  a("pulled_through_V", found.pulled_through, "voltage at which the closed structure collapses onto the electrode");
+  if (a.has(std::isfinite(found.neutral))) a("neutral_V", found.neutral, "voltage without a field, for a charged dielectric");
+  a.custom("by_modes", found.by_modes, internal::voltages_by_modes_json, internal::read_voltages_by_modes,
+           internal::Like<std::map<std::string, std::map<std::string, double>>>{
+               "each voltage by number of modes, `converged`: extrapolated; null for a plate and a table of modes"});
 }
 
 template <class A>
 void members(A& a, StablePathRecord& path) {
   std::vector<std::string> drives{path.drive};
   if (A::reads) drives.clear();
-  a("drives", drives);
+  a("drives", drives, "drive that moves the switch to its contact");
   if (!drives.empty()) path.drive = drives.front();
-  a("reaches_V", path.reaches);
-  a("limit_V", path.limit);
-  a("share_of_devices", internal::OrNull{path.share});
+  a("reaches_V", path.reaches, "level at which the nominal design touches");
+  a("limit_V", path.limit, "limit of the voltage source");
+  a("share_of_devices", internal::OrNull{path.share},
+    "share of the devices of [spread] that reach the contact by this drive alone");
 }
 
 }  // namespace softland

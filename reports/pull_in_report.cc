@@ -15,6 +15,7 @@
 #include "document/text.h"
 #include "model/pull_in.h"
 #include "reports/closing_record.h"
+#include "reports/member_lister.h"
 #include "reports/pull_in_members.h"
 #include "studies/closing/closed_state.h"
 #include "studies/devices/stable_approach.h"
@@ -138,44 +139,46 @@ std::optional<VoltagesByModes> internal::read_voltages_by_modes(const json& from
 
 template <class A>
 void members(A& a, ElectrodeRecord& electrode) {
-  a("status", electrode.status);
-  a("pull_in", electrode.volts);
-  if (a.has(!electrode.bias.empty())) a("bias_V", electrode.bias);
-  if (a.has(!electrode.bias_factor.empty())) a("bias_factor", electrode.bias_factor);
+  a("status", electrode.status, "outcome for the electrode");
+  a("pull_in", electrode.volts, "its pull-in voltages");
+  if (a.has(!electrode.bias.empty())) a("bias_V", electrode.bias, "constant voltages of the other drives, if not 0");
+  if (a.has(!electrode.bias_factor.empty())) a("bias_factor", electrode.bias_factor, "factor of a dispersion force, if not 1");
 }
 
 template <class A>
 void members(A& a, SweepPoint& point) {
-  a("voltage_V", point.voltage);
-  a("deflection_m", point.deflection);
-  a("capacitance_F", point.capacitance);
+  a("voltage_V", point.voltage, "voltage of the swept electrode");
+  a("deflection_m", point.deflection, "deflection of the contact point");
+  a("capacitance_F", point.capacitance, "capacitance of the electrode");
   a.custom(
-      "branch", point.is_up, [&](bool) { return branch_name(point); }, [](const json& name) { return name == "up"; });
+      "branch", point.is_up, [&](bool) { return branch_name(point); }, [](const json& name) { return name == "up"; },
+      internal::Like<std::string>{"`up` while the voltage rises, then `down`"});
   a.custom(
       "status", point.state, [](SweepState state) { return to_string(state); },
       [](const json& name) {
         return name == to_string(SweepState::open)     ? SweepState::open
                : name == to_string(SweepState::closed) ? SweepState::closed
                                                        : SweepState::none;
-      });
+      },
+      internal::Like<std::string>{"state of the switch: `open`, `closed` or `collapsed_onto_electrode`"});
 }
 
 template <class A>
 void members(A& a, PullInsRecord& record) {
-  a("electrodes", record.electrodes);
+  a("electrodes", record.electrodes, "each electrode by its name");
   // In JSON, the pull-in members of a single electrode are repeated at the top level.
   if (!A::reads && record.electrodes.size() == 1) members(a, record.electrodes.begin()->second);
   std::map<std::string, PullInRecord> voltages;
   for (const auto& [name, one] : record.electrodes) voltages[name] = one.volts;
-  if (record.electrodes.size() != 1) a.derived("pull_in", voltages);
+  if (record.electrodes.size() != 1) a.derived("pull_in", voltages, "voltages of several electrodes, by name");
   members(a, record.origin);
-  a("status", record.status);
-  a("stable_path", internal::OrNull{record.stable_path});
+  a("status", record.status, "`done`, `interrupted`, or that of the first electrode that should pull in and does not");
+  a("stable_path", internal::OrNull{record.stable_path}, "path of stable equilibria to the contact");
   if (a.has(!record.swept.empty())) {
-    a("swept", record.swept);
-    a("sweep", record.sweep);
+    a("swept", record.swept, "swept electrode, with `--sweep`");
+    a("sweep", record.sweep, "points of the sweep");
   }
-  if (a.has(!record.left_out.empty())) a("left_out", record.left_out);
+  if (a.has(!record.left_out.empty())) a("left_out", record.left_out, "what an interruption left out");
 }
 
 ElectrodeRecord record_of(const PreparedScene& p, std::size_t k, const ElectrodePullIn& known) {
@@ -265,6 +268,13 @@ std::string words_of(const std::optional<StablePathRecord>& path) {
     words += fmt::format("; {} of the devices do so within {}", internal::percent(*path->share),
                          internal::given_quantity(path->limit, "V"));
   return words;
+}
+
+template <>
+std::vector<JsonMember> json_members<PullInsRecord>() {
+  std::vector<JsonMember> all = internal::listed<PullInsRecord>();
+  internal::add_members(all, internal::listed(PullInsRecord{.electrodes = {{"main", {}}}}));
+  return all;
 }
 
 json json_of(const PullInsRecord& record) { return internal::record_json(record); }

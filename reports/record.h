@@ -1,6 +1,6 @@
-// A record is a struct with the results of a verb. One list of its members serves to write and to read it as JSON:
-// `members(archive, record)`, a function template beside the type of the record, names every member once. JsonWriter and
-// JsonReader are archives, as in Drake's Serialize.
+// One list of members serves to write and to read a record as JSON, and to describe it in the manual. `members(archive, record)`,
+// a function template beside the type of the record, names every member once, with its meaning. JsonWriter, JsonReader and
+// MemberLister (reports/member_lister.h) are archives, as in Drake's Serialize. Only the lister uses the meaning.
 //
 // A non-finite number is null in JSON. JsonReader reads the members that are present. A number that is missing or null becomes
 // NaN. Any other member that is missing or of another type keeps its value in the record.
@@ -59,6 +59,26 @@ struct Chosen {
 template <class T, class Rows>
 Chosen(T&, const Rows&) -> Chosen<Rows>;
 
+/// Figures of merit that are members of one object, and their meaning.
+struct FigureGroup {
+  bool (*has)(const Figure&);
+  std::string_view about;
+};
+/// The meaning of a member whose JSON a separate function writes as that of a T.
+template <class T>
+struct Like {
+  std::string_view about;
+};
+/// The same for one T, or for several by name.
+template <class T>
+struct OneOrMore {
+  std::string_view about;
+};
+/// The meaning of a member whose JSON a separate function writes, and the type of this JSON.
+struct Written {
+  std::string_view type, about;
+};
+
 template <class Record>
 [[nodiscard]] json record_json(const Record& record);
 /// Checks that JSON was read completely: throws InvalidInput with the first difference between the JSON `read` and the JSON
@@ -67,42 +87,43 @@ void require_same(const json& written, const json& read);
 
 class JsonWriter {
  public:
-  static constexpr bool reads = false;
-  /// Returns the condition `where`, under which members() lists further members of the record. A reader lists them in any case.
+  static constexpr bool reads = false, lists = false;
+  /// Returns whether the writer writes members of a record that exist only if `where` holds.
   [[nodiscard]] static bool has(bool where) { return where; }
 
   template <class T>
-  void operator()(std::string_view key, const T& value) {
+  void operator()(std::string_view key, const T& value, std::string_view) {
     json_[std::string(key)] = of(value);
   }
   template <class T>
-  void operator()(std::string_view key, const std::optional<T>& value) {
-    if (value) (*this)(key, *value);
+  void operator()(std::string_view key, const std::optional<T>& value, std::string_view about) {
+    if (value) (*this)(key, *value, about);
   }
   /// Writes two numbers as a list of JSON.
-  void pair(std::string_view key, double low, double high) { json_[std::string(key)] = {json_number(low), json_number(high)}; }
-  /// Writes a value that a separate function converts to JSON.
-  template <class T, class Write, class Read>
-  void custom(std::string_view key, const T& value, const Write& write, const Read&) {
+  void pair(std::string_view key, double low, double high, std::string_view) {
+    json_[std::string(key)] = {json_number(low), json_number(high)};
+  }
+  /// Writes a value that a separate function converts to JSON; `shape` is a Like, a OneOrMore or a Written.
+  template <class T, class Write, class Read, class Shape>
+  void custom(std::string_view key, const T& value, const Write& write, const Read&, const Shape&) {
     json_[std::string(key)] = write(value);
   }
   /// Writes a value that is computed from other members of the record; a reader skips it.
   template <class T>
-  void derived(std::string_view key, const T& value) {
-    (*this)(key, value);
+  void derived(std::string_view key, const T& value, std::string_view about) {
+    (*this)(key, value, about);
   }
   /// Writes an object with the members that `inside(archive)` names.
   template <class Inside>
-  void object(std::string_view key, const Inside& inside) {
+  void object(std::string_view key, const Inside& inside, std::string_view) {
     JsonWriter own;
     inside(own);
     json_[std::string(key)].update(own.json_);
   }
-  /// Writes the figures of merit for which `asked` returns true.
-  template <class Asked>
-  void figures(const FigureValues& values, const Asked& asked) {
+  /// Writes the figures of merit of a group.
+  void figures(const FigureValues& values, const FigureGroup& group) {
     for (const Figure& figure : all_figures) {
-      if (asked(figure) && figure.is_asked(values.asked)) json_[std::string(figure.key)] = of(figure, values[figure]);
+      if (group.has(figure) && figure.is_asked(values.asked)) json_[std::string(figure.key)] = of(figure, values[figure]);
     }
   }
   [[nodiscard]] json take() && { return std::move(json_); }
@@ -166,36 +187,35 @@ class JsonWriter {
 
 class JsonReader {
  public:
-  static constexpr bool reads = true;
+  static constexpr bool reads = true, lists = false;
   [[nodiscard]] static bool has(bool) { return true; }
 
   /// The reader keeps a reference to `json`, which must outlive the reader.
   explicit JsonReader(const json& json) : json_(&json) {}
 
   template <class T>
-  void operator()(std::string_view key, T&& value) {
+  void operator()(std::string_view key, T&& value, std::string_view) {
     take(at(key), value);
   }
-  void pair(std::string_view key, double& low, double& high) {
+  void pair(std::string_view key, double& low, double& high, std::string_view) {
     const json& list = at(key);
     if (!list.is_array() || list.size() != 2) return;
     take(list[0], low);
     take(list[1], high);
   }
-  template <class T, class Write, class Read>
-  void custom(std::string_view key, T& value, const Write&, const Read& read) {
+  template <class T, class Write, class Read, class Shape>
+  void custom(std::string_view key, T& value, const Write&, const Read& read, const Shape&) {
     value = read(at(key));
   }
   template <class T>
-  void derived(std::string_view, const T&) const {}
+  void derived(std::string_view, const T&, std::string_view) const {}
   template <class Inside>
-  void object(std::string_view key, const Inside& inside) {
+  void object(std::string_view key, const Inside& inside, std::string_view) {
     if (!at(key).is_object()) return;
     JsonReader own(at(key));
     inside(own);
   }
-  template <class Asked>
-  void figures(FigureValues& values, const Asked&) {
+  void figures(FigureValues& values, const FigureGroup&) {
     for (const Figure& figure : all_figures) {
       if (figure.asked != nullptr && json_->contains(figure.key)) values.asked.*figure.asked = true;
       take(figure, at(figure.key), values[figure]);

@@ -14,6 +14,7 @@
 #include "document/quantity.h"
 #include "document/svg.h"
 #include "reports/closing_record.h"
+#include "reports/member_lister.h"
 #include "reports/robustness_prose.h"
 #include "reports/study_members.h"
 #include "studies/closing/summits_at_hold.h"
@@ -165,74 +166,74 @@ ReportTable parameters_table(const ReleaseRecord& r) {
 
 template <class A>
 void members(A& a, OpeningFigures& figures) {
-  a("status", figures.status);
-  a("release_time_s", figures.release_time);
-  a("settling_time_s", figures.settling_time);
-  a("overshoot_m", figures.overshoot);
-  a("residual_vibration_m", figures.residual_vibration);
-  a("touches_again", figures.touches);
+  a("status", figures.status, "outcome of the opening");
+  a("release_time_s", figures.release_time, "last time at which the contact opens");
+  a("settling_time_s", figures.settling_time, "time from which the contact point stays in the band");
+  a("overshoot_m", figures.overshoot, "largest excursion beyond the open position");
+  a("residual_vibration_m", figures.residual_vibration, "largest distance from the open position once the drives are at 0 V");
+  a("touches_again", figures.touches, "number of touches after the first opening");
 }
 
 template <class A>
 void members(A& a, ReleaseRecord::Run& run) {
-  a("figures", run.figures);
-  a("message", run.message);
-  a("drives_end_s", run.drives_end);
-  a("waveforms", run.waveforms);
+  a("figures", run.figures, "figures of the opening");
+  a("message", run.message, "why the run is not done");
+  a("drives_end_s", run.drives_end, "time from which all drives are at 0 V");
+  a("waveforms", run.waveforms, "waveform of each drive from its hold level on: time [s], level [V]");
 }
 
 template <class A>
 void members(A& a, ConfirmingOpening& check) {
-  a("name", check.name);
-  a("figures", check.figures);
+  a("name", check.name, "what differs in the repeated simulation");
+  a("figures", check.figures, "figures of the opening");
 }
 
 template <class A>
 void members(A& a, DeviceOpenings& openings) {
-  a("open", openings.open);
-  a("in_band_with_drives", openings.in_band);
-  a("settling_time_s", internal::OrInfinite{openings.settling_time});
-  a("residual_vibration_m", internal::OrInfinite{openings.residual_vibration});
-  a("overshoot_m", internal::OrInfinite{openings.overshoot});
+  a("open", openings.open, "share of devices that stay open");
+  a("in_band_with_drives", openings.in_band, "share of devices in the band as soon as the drives are at 0 V");
+  a("settling_time_s", internal::OrInfinite{openings.settling_time}, "95th percentile of the settling time");
+  a("residual_vibration_m", internal::OrInfinite{openings.residual_vibration}, "95th percentile of the residual vibration");
+  a("overshoot_m", internal::OrInfinite{openings.overshoot}, "95th percentile of the overshoot");
 }
 
 template <class A>
 void members(A& a, ReleaseRecord::Devices& devices) {
-  a("count", devices.count);
-  a("spread_assumed", devices.spread_assumed);
-  a("spread", devices.spread);
-  a("plain", devices.plain);
-  a("best", devices.best);
+  a("count", devices.count, "number of devices");
+  a("spread_assumed", devices.spread_assumed, "whether the scene has no [spread] and the usual one was assumed");
+  a("spread", devices.spread, "the process variation in words");
+  a("plain", devices.plain, "openings by the abrupt step");
+  a("best", devices.best, "openings by the best waveform");
 }
 
 template <class A>
 void members(A& a, ReleaseRecord::Gap& course) {
-  a("time_s", course.time);
-  a("tip_gap_m", course.gap);
+  a("time_s", course.time, "time");
+  a("tip_gap_m", course.gap, "gap of the contact");
 }
 
 template <class A>
 void members(A& a, ReleaseRecord& r) {
   members(a, r.origin);
-  a("status", r.status);
-  a("actuator", internal::Chosen{r.actuator, actuators});
-  a("hold_levels", r.hold_levels);
-  a("contact_force_N", r.contact_force);
-  a("open_position_m", r.open_position);
-  a("band_m", r.band);
-  a("band_of_contact_gap", r.band_share);
-  a("plain", r.plain);
-  a("best", internal::OrNull{r.best});
-  a("parameters", r.parameters);
-  a("confirmed_by", r.checks);
-  a("devices", internal::OrNull{r.devices});
-  a("goal_met", r.goal_met);
-  a("confirmed", r.confirmed);
-  a("evaluations", r.evaluations);
-  a("seed", r.seed);
-  a("termination", r.termination);
-  a("warnings", r.warnings);
-  if (a.has(!r.gaps.empty())) a("curves", r.gaps);
+  a("status", r.status, "outcome of the opening, or `interrupted`");
+  a("actuator", internal::Chosen{r.actuator, actuators}, "drives that were searched");
+  a("hold_levels", r.hold_levels, "level of each drive before the opening");
+  a("contact_force_N", r.contact_force, "contact force before the opening");
+  a("open_position_m", r.open_position, "open rest position of the contact point");
+  a("band_m", r.band, "distance from it within which the switch is at rest");
+  a("band_of_contact_gap", r.band_share, "the same as a share of the contact gap");
+  a("plain", r.plain, "opening by the abrupt step");
+  a("best", internal::OrNull{r.best}, "opening by the best waveform");
+  a("parameters", r.parameters, "parameters of the best waveform");
+  a("confirmed_by", r.checks, "repeated simulations");
+  a("devices", internal::OrNull{r.devices}, "openings under process variation");
+  a("goal_met", r.goal_met, "whether the settling time is met");
+  a("confirmed", r.confirmed, "whether the repeated simulations agree");
+  a("evaluations", r.evaluations, "number of evaluations");
+  a("seed", r.seed, "seed of the search");
+  a("termination", r.termination, "why the search ended");
+  a("warnings", r.warnings, "warnings");
+  if (a.has(!r.gaps.empty())) a("curves", r.gaps, "gap over time of each opening, in files only");
 }
 
 ReleaseRecord record_of(const OpeningResult& r, const std::string& command) {
@@ -264,6 +265,11 @@ ReleaseRecord record_of(const OpeningResult& r, const std::string& command) {
   if (std::string few = few_summits_warning(r.given.model, r.given.signals()); !few.empty())
     record.warnings.push_back(std::move(few));
   return record;
+}
+
+template <>
+std::vector<JsonMember> json_members<ReleaseRecord>() {
+  return internal::listed<ReleaseRecord>();
 }
 
 json json_of(const ReleaseRecord& record) { return internal::record_json(record); }

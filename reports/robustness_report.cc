@@ -14,6 +14,7 @@
 #include "document/json_number.h"
 #include "reports/box_and_chaos_report.h"
 #include "reports/derivatives_report.h"
+#include "reports/member_lister.h"
 #include "reports/robustness_prose.h"
 #include "reports/study_members.h"
 #include "studies/closing/closed_state.h"
@@ -135,13 +136,14 @@ std::string about_prose(const RobustnessReport& report) {
 
 // Writes or reads the parts of the results that belong to one figure of merit each, in the order of `keys`.
 template <class A, class Part, class Keys>
-void by_figure(A& a, std::vector<Part>& parts, const Keys& keys) {
+void by_figure(A& a, std::vector<Part>& parts, const Keys& keys, std::string_view about) {
   if constexpr (A::reads) {
     for (const std::string_view key : keys) {
       if (a.at(key).is_object()) parts.emplace_back().key = key;
     }
   }
-  for (Part& part : parts) a(part.key, part);
+  for (Part& part : parts) a(part.key, part, about);
+  if constexpr (A::lists) a("FIGURE", Part{}, about);
 }
 
 }  // namespace
@@ -161,7 +163,7 @@ struct QuantileAt {
 };
 template <class A>
 void members(A& a, QuantileAt& one) {
-  a("probability", one.probability);
+  a("probability", one.probability, "probability of the quantile");
   softland::members(a, one.quantile);
 }
 
@@ -169,197 +171,221 @@ void members(A& a, QuantileAt& one) {
 
 template <class A>
 void members(A& a, FigureStatistics& s) {
-  a("mean", s.mean);
-  a("standard_deviation", s.standard_deviation);
-  a("skewness", s.skewness);
-  a("devices", s.devices);
+  a("mean", s.mean, "mean over the devices that have the figure");
+  a("standard_deviation", s.standard_deviation, "standard deviation over these devices");
+  a("skewness", s.skewness, "skewness over these devices");
+  a("devices", s.devices, "number of these devices");
   std::vector<internal::QuantileAt> quantiles;
   for (std::size_t i = 0; !A::reads && i < s.quantiles.size(); ++i)
     quantiles.push_back({robustness_quantiles[i], s.quantiles[i]});
-  a("quantiles", quantiles);
+  a("quantiles", quantiles, "quantiles over all devices");
   for (std::size_t i = 0; i < std::min(quantiles.size(), s.quantiles.size()); ++i) s.quantiles[i] = quantiles[i].quantile;
 }
 
 template <class A>
 void members(A& a, Calibration& c) {
-  a("Vdp_error", internal::OrNull{c.pull_in_error});
-  a("frequency_error", internal::OrNull{c.frequency_error});
-  a("piezo_error", internal::OrNull{c.piezo_error});
-  a("time_error_s", internal::OrNull{c.time_error});
-  a("classes", internal::OrNull{c.classes});
+  a("Vdp_error", internal::OrNull{c.pull_in_error}, "relative error of the measured Vdp of each device");
+  a("frequency_error", internal::OrNull{c.frequency_error}, "relative error of the measured frequency");
+  a("piezo_error", internal::OrNull{c.piezo_error}, "relative error of the measured deflection by the piezo");
+  a("time_error_s", internal::OrNull{c.time_error}, "standard deviation of the error of a measured closing time");
+  a("classes", internal::OrNull{c.classes}, "number of classes into which devices are sorted");
 }
 
 template <class A>
 void members(A& a, MeasuredUnits::Class& c) {
-  a("volts_factor", c.centre.volts);
-  a("time_factor", c.centre.time);
-  a("piezo_factor", c.centre.piezo);
-  a("share", c.share);
+  a("volts_factor", c.centre.volts, "factor of the voltages of the class");
+  a("time_factor", c.centre.time, "factor of its times");
+  a("piezo_factor", c.centre.piezo, "factor of its piezo voltages");
+  a("share", c.share, "share of the devices in the class");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord::Varied& v) {
-  a("name", v.name);
-  a("keys", v.keys);
-  a("distribution", v.distribution);
-  a("unit", v.unit);
-  a("is_factor", v.is_factor);
-  a("mean", v.mean);
-  a("standard_deviation", v.deviation);
+  a("name", v.name, "name of the varied quantity");
+  a("keys", v.keys, "keys of the scene that vary with it");
+  a("distribution", v.distribution, "kind of distribution");
+  a("unit", v.unit, "unit of its first key; empty for a factor");
+  a("is_factor", v.is_factor, "whether it multiplies the value of the scene");
+  a("mean", v.mean, "mean");
+  a("standard_deviation", v.deviation, "standard deviation");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord::Device& device) {
-  a("device", device.number);
-  a("values", device.values);
-  a("status", device.status);
-  a("figures", device.figures);
-  if (a.has(!device.failure.empty())) a("failure", device.failure);
+  a("device", device.number, "number of the device");
+  a("values", device.values, "its varied quantities [SI unit, or factor]");
+  a("status", device.status, "outcome of its closing");
+  a("figures", device.figures, "its figures, by key");
+  if (a.has(!device.failure.empty())) a("failure", device.failure, "why the device was not simulated to the end");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord::Drive& d) {
-  a("name", d.name);
-  a("closed_state", internal::OrNull{d.closed_state});
-  a("calibration", d.calibration);
-  a("classes", d.classes);
-  a("waveforms", d.waveforms);
-  a("closing", d.closing);
-  a("collapsed_onto_electrode", d.collapsed);
-  a("bounce_free", d.bounce_free);
-  a.object("figures", [&](auto& figures) {
-    for (const Figure& f : device_figures) {
-      if (figures.has(f.asked == nullptr || d.figures[f].devices > 0)) figures(f.key, d.figures[f]);
-    }
-  });
-  a("failures", d.failures);
-  a("worst", d.worst);
+  a("name", d.name, "name of the set of waveforms");
+  a("closed_state", internal::OrNull{d.closed_state}, "closed equilibrium of the nominal design");
+  a("calibration", d.calibration, "measurements that scale the waveforms of each device; null: not measured");
+  a("classes", d.classes, "classes into which devices are sorted");
+  a("waveforms", d.waveforms, "waveform of each drive: time [s], level [V]");
+  a("closing", d.closing, "devices that close and stay closed");
+  a("collapsed_onto_electrode", d.collapsed, "devices that collapse onto the electrode");
+  a("bounce_free", d.bounce_free, "devices that close without a significant rebound");
+  a.object(
+      "figures",
+      [&](auto& figures) {
+        for (const Figure& f : device_figures) {
+          if (A::lists || !figures.has(f.asked == nullptr || d.figures[f].devices > 0)) continue;
+          figures(f.key, d.figures[f], "statistics of the figure");
+        }
+        if constexpr (A::lists) figures("FIGURE", FigureStatistics{}, "statistics of the figure");
+      },
+      "figures over the devices");
+  a("failures", d.failures, "number of devices that do not close, by reason");
+  a("worst", d.worst, "worst devices");
 }
 
 template <class A>
 void members(A& a, SobolIndex& index) {
-  a("value", index.value);
-  a.pair("interval", index.interval.low, index.interval.high);
-  a("above_zero", index.above_zero);
+  a("value", index.value, "the index");
+  a.pair("interval", index.interval.low, index.interval.high, "confidence interval of the index");
+  a("above_zero", index.above_zero, "whether the interval is above zero");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord::Sensitive::Indices& indices) {
-  a("first_order", indices.first_order);
-  a("total", indices.total);
+  a("first_order", indices.first_order, "Sobol' index of first order");
+  a("total", indices.total, "total Sobol' index");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord::Sensitive& s) {
-  a("rows", s.rows);
-  a("failed_rows", s.failed_rows);
-  a("variables", s.variables);
+  a("rows", s.rows, "number of rows of the estimate");
+  a("failed_rows", s.failed_rows, "number of rows with a failed simulation");
+  a("variables", s.variables, "indices by varied quantity");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord::Derived::Variable& v) {
-  a("nominal", v.nominal);
-  a("standard_deviation", v.deviation);
-  if (a.has(!v.why_none.empty())) a("why_none", v.why_none);
+  a("nominal", v.nominal, "value of the nominal design");
+  a("standard_deviation", v.deviation, "standard deviation over the devices");
+  if (a.has(!v.why_none.empty())) a("why_none", v.why_none, "why there is no derivative by it");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord::Derived::Slope& slope) {
-  a("derivative", slope.derivative);
-  a("relative", slope.relative);
-  a("per_standard_deviation", slope.step);
+  a("derivative", slope.derivative, "derivative of the figure [SI units]");
+  a("relative", slope.relative, "relative change of the figure divided by that of the quantity");
+  a("per_standard_deviation", slope.step, "change of the figure for one standard deviation of the quantity");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord::Derived::Of& figure) {
-  a("nominal", figure.nominal);
-  a("by", figure.by);
-  a("standard_deviation", figure.deviation);
-  a("error", figure.error);
-  a("agrees_with_devices", figure.agrees);
-  if (a.has(!figure.why_none.empty())) a("why_none", figure.why_none);
+  a("nominal", figure.nominal, "figure of the nominal design");
+  a("by", figure.by, "derivatives by varied quantity");
+  a("standard_deviation", figure.deviation, "standard deviation that the derivatives predict");
+  a("error", figure.error, "error of the derivatives");
+  a("agrees_with_devices", figure.agrees, "whether the figure varies as much over the devices, or that is unknown");
+  if (a.has(!figure.why_none.empty())) a("why_none", figure.why_none, "why there is no derivative");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord::Derived& d) {
-  a("drive", d.drive);
-  a("grazes", d.grazes);
-  a("slowest_crossing", d.grazing);
-  a("variables", d.variables);
-  a.object("figures", [&](auto& figures) {
-    std::vector<std::string_view> keys;
-    for (const Figure& f : device_figures) keys.push_back(f.key);
-    by_figure(figures, d.figures, keys);
-  });
-  if (a.has(!d.why_none.empty())) a("why_none", d.why_none);
+  a("drive", d.drive, "set of waveforms");
+  a("grazes", d.grazes, "whether a touch nearly appears or disappears, so that derivatives hold for small changes only");
+  a("slowest_crossing", d.grazing, "smallest speed through the contact plane, as a share of that at first contact");
+  a("variables", d.variables, "varied quantities");
+  a.object(
+      "figures",
+      [&](auto& figures) {
+        std::vector<std::string_view> keys;
+        for (const Figure& f : device_figures) keys.push_back(f.key);
+        by_figure(figures, d.figures, keys, "derivatives of the figure");
+      },
+      "derivatives of figures");
+  if (a.has(!d.why_none.empty())) a("why_none", d.why_none, "why there are no derivatives");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord::BoxAndChaosRecord::InBox& device) {
-  a("value", device.figure);
-  a("values", device.values);
-  a("status", device.status);
-  if (a.has(!device.failure.empty())) a("failure", device.failure);
+  a("value", device.figure, "the figure");
+  a("values", device.values, "varied quantities of the device [SI unit, or factor]");
+  a("status", device.status, "outcome of its closing");
+  if (a.has(!device.failure.empty())) a("failure", device.failure, "why the device was not simulated to the end");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord::BoxAndChaosRecord::Range& range) {
-  a("least", range.least);
-  a("most", range.most);
-  a.pair("sampled", range.of_sample.low, range.of_sample.high);
+  a("least", range.least, "device with the least figure in the box");
+  a("most", range.most, "device with the largest figure in the box");
+  a.pair("sampled", range.of_sample.low, range.of_sample.high, "least and largest figure of the sampled devices inside");
 }
 
 template <class A>
 void members(A& a, FigureChaos& c) {
-  a("devices", c.fitted);
-  a("other_devices", c.unseen);
-  a("degree", c.degree);
-  a("terms", c.terms);
-  a("q2_cross_validated", c.q2);
-  a("q2_other_devices", c.q2_unseen);
-  a("mean", c.mean);
-  a("standard_deviation", c.standard_deviation);
-  a("quantile_95", c.quantile_95);
+  a("devices", c.fitted, "number of devices to which the polynomials are fitted");
+  a("other_devices", c.unseen, "number of devices on which they are tested");
+  a("degree", c.degree, "degree of the polynomials");
+  a("terms", c.terms, "number of terms");
+  a("q2_cross_validated", c.q2, "share of the variance that they predict, by cross-validation");
+  a("q2_other_devices", c.q2_unseen, "the same on the other devices");
+  a("mean", c.mean, "mean of the figure");
+  a("standard_deviation", c.standard_deviation, "standard deviation of the figure");
+  a("quantile_95", c.quantile_95, "95th percentile of the figure");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord::BoxAndChaosRecord& ways) {
-  a("drive", ways.drive);
-  a.object("box", [&](auto& box) {
-    box("share_of_devices", ways.share);
-    box("half_width_standard_deviations", ways.half_width);
-    box("sampled_devices_inside", ways.sampled_inside);
-    box("closings", ways.closings);
-    box.object("figures", [&](auto& figures) { by_figure(figures, ways.ranges, explained_figures); });
-  });
-  a("devices_left_out", ways.left_out);
-  a.object("polynomial_chaos", [&](auto& chaos) { by_figure(chaos, ways.chaos, explained_figures); });
-  if (a.has(!ways.why_none.empty())) a("why_none", ways.why_none);
+  a("drive", ways.drive, "set of waveforms");
+  a.object(
+      "box",
+      [&](auto& box) {
+        box("share_of_devices", ways.share, "share of devices inside the box");
+        box("half_width_standard_deviations", ways.half_width, "half width of the box in standard deviations");
+        box("sampled_devices_inside", ways.sampled_inside, "number of sampled devices inside");
+        box("closings", ways.closings, "number of closings of the searches");
+        box.object(
+            "figures",
+            [&](auto& figures) { by_figure(figures, ways.ranges, explained_figures, "range of the figure in the box"); },
+            "range of each figure");
+      },
+      "worst cases in a box of the varied quantities");
+  a("devices_left_out", ways.left_out, "number of devices without the figures");
+  a.object(
+      "polynomial_chaos", [&](auto& chaos) { by_figure(chaos, ways.chaos, explained_figures, "polynomials for the figure"); },
+      "polynomials in the varied quantities, by figure");
+  if (a.has(!ways.why_none.empty())) a("why_none", ways.why_none, "why there are no such results");
 }
 
 template <class A>
 void members(A& a, RobustnessRecord& r) {
   members(a, r.origin);
-  a("status", internal::Stopped{r.interrupted});
-  a("devices", r.devices);
-  a("seed", r.seed);
-  a("points", internal::Chosen{r.points, point_sets});
-  a("duration_s", r.duration);
-  a("tolerance", r.tolerance);
-  a("about", r.about);
-  a("spread", r.spread);
-  a("spread_assumed", r.spread_assumed);
-  a.custom("hold_window_V", r.windows, internal::windows_json, internal::read_windows);
-  a("hold_window_devices", r.windows.devices);
-  a("drives", r.drives);
-  a("by_knowledge", r.by_knowledge);
-  a.object("sensitivity", [&](auto& sensitivity) {
-    sensitivity.object("figures", [&](auto& figures) { by_figure(figures, r.sensitivity, explained_figures); });
-    if (sensitivity.has(!r.why_no_sensitivity.empty())) sensitivity("why_none", r.why_no_sensitivity);
-  });
-  a("derivatives", r.derivatives);
-  a("other_ways", internal::OrNull{r.box_and_chaos});
-  a("warnings", r.warnings);
+  a("status", internal::Stopped{r.interrupted}, "`done` or `interrupted`");
+  a("devices", r.devices, "number of simulated devices");
+  a("seed", r.seed, "seed of the devices");
+  a("points", internal::Chosen{r.points, point_sets}, "point set of the devices");
+  a("duration_s", r.duration, "simulated time");
+  a("tolerance", r.tolerance, "relative tolerance of the integrator");
+  a("about", r.about, "the devices in words");
+  a("spread", r.spread, "varied quantities");
+  a("spread_assumed", r.spread_assumed, "whether the scene has no [spread] and the usual one was assumed");
+  a.custom("hold_window_V", r.windows, internal::windows_json, internal::read_windows,
+           internal::Like<std::map<std::string, std::array<double, 2>>>{
+               "by electrode, hold voltages between which the devices stay closed"});
+  a("hold_window_devices", r.windows.devices, "number of devices in the hold window");
+  a("drives", r.drives, "results by set of waveforms, the plain step first");
+  a("by_knowledge", r.by_knowledge, "results of the last set with other measurements");
+  a.object(
+      "sensitivity",
+      [&](auto& sensitivity) {
+        sensitivity.object(
+            "figures", [&](auto& figures) { by_figure(figures, r.sensitivity, explained_figures, "indices of the figure"); },
+            "indices by figure");
+        if (sensitivity.has(!r.why_no_sensitivity.empty()))
+          sensitivity("why_none", r.why_no_sensitivity, "why there are no indices");
+      },
+      "Sobol' indices");
+  a("derivatives", r.derivatives, "derivatives of the last set of waveforms");
+  a("other_ways", internal::OrNull{r.box_and_chaos}, "worst cases and polynomial chaos, with `--other-ways`");
+  a("warnings", r.warnings, "warnings");
 }
 
 void add_details(RobustnessReport& report, bool other_ways_too, const Progress& progress) {
@@ -408,6 +434,11 @@ RobustnessRecord record_of(const RobustnessReport& report) {
   for (const DriveRobustness& d : found.by_knowledge) record.by_knowledge.push_back(drive_of(report, ensemble, d));
   if (ways) record.box_and_chaos = internal::record_of(*ways, found.drives.back(), nominal);
   return record;
+}
+
+template <>
+std::vector<JsonMember> json_members<RobustnessRecord>() {
+  return internal::listed<RobustnessRecord>();
 }
 
 json json_of(const RobustnessRecord& record) { return internal::record_json(record); }

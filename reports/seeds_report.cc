@@ -11,6 +11,7 @@
 
 #include "document/quantity.h"
 #include "reports/figure_text.h"
+#include "reports/member_lister.h"
 #include "reports/study_members.h"
 #include "sampling/statistics.h"
 
@@ -27,13 +28,10 @@ constexpr std::array shown_figures{figure_of(&Metrics::initial_contact_time), fi
 
 double or_none(double value) { return std::isfinite(value) ? value : worst; }
 
-// Lowest value, quartiles and highest value of a sample.
-using FiveNumbers = std::array<double, 5>;
 FiveNumbers five_numbers(const std::vector<double>& sample) {
-  FiveNumbers all;
-  for (std::size_t k = 0; k < all.size(); ++k)
-    all[k] = sample.empty() ? Metrics::unset : sample_quantile(sample, 0.25 * static_cast<double>(k));
-  return all;
+  if (sample.empty()) return {};
+  const auto at = [&](double probability) { return sample_quantile(sample, probability); };
+  return {.least = at(0), .lower_quartile = at(0.25), .median = at(0.5), .upper_quartile = at(0.75), .most = at(1)};
 }
 
 FiveNumbers spread_of_cost(const SeedsFindings& seeds) {
@@ -48,14 +46,6 @@ FiveNumbers spread_of(const SeedsFindings& seeds, const Figure& figure) {
     if (const double value = one.figures[figure]; std::isfinite(value)) values.push_back(value);
   }
   return five_numbers(values);
-}
-
-json five_json(const FiveNumbers& n) {
-  return {{"least", json_number(n[0])},
-          {"lower_quartile", json_number(n[1])},
-          {"median", json_number(n[2])},
-          {"upper_quartile", json_number(n[3])},
-          {"most", json_number(n[4])}};
 }
 
 // Returns the reason why the search with one of the seeds failed; empty if the search succeeded.
@@ -105,24 +95,29 @@ void rank(SeedsFindings& seeds, const Aim& target, double significant, bool over
   seeds.best = static_cast<std::size_t>(best - seeds.searches.begin());
 }
 
-json internal::seeds_summary(const SeedsFindings& seeds) {
-  json failed = json::array(), figures = json::object();
+SeedsSummary internal::seeds_summary(const SeedsFindings& seeds) {
+  SeedsSummary all{.goal_met = std::ranges::count_if(seeds.searches, &SearchOfSeed::goal_met),
+                   .confirmed = std::ranges::count_if(seeds.searches, &SearchOfSeed::confirmed),
+                   .failed = {},
+                   .cost = spread_of_cost(seeds),
+                   .figures = {}};
   for (const SearchOfSeed& one : seeds.searches) {
-    if (const std::string why = failure(one); !why.empty()) failed.push_back({{"seed", one.seed}, {"reason", why}});
+    if (std::string why = failure(one); !why.empty()) all.failed.push_back({one.seed, std::move(why)});
   }
-  for (const Figure& f : shown_figures) figures[std::string(f.key)] = five_json(spread_of(seeds, f));
-  return {{"goal_met", std::ranges::count_if(seeds.searches, &SearchOfSeed::goal_met)},
-          {"confirmed", std::ranges::count_if(seeds.searches, &SearchOfSeed::confirmed)},
-          {"failed", std::move(failed)},
-          {"cost", five_json(spread_of_cost(seeds))},
-          {"metrics", std::move(figures)}};
+  for (const Figure& f : shown_figures) all.figures[std::string(f.key)] = spread_of(seeds, f);
+  return all;
 }
 
 template <class A>
 void members(A& a, SeedsRecord& record) {
   members(a, record.origin);
-  a.derived("status", std::string("interrupted"));
-  a("seeds", record.seeds);
+  a.derived("status", std::string("interrupted"), "`interrupted`: a complete study has the JSON of its best search");
+  a("seeds", record.seeds, "searches so far");
+}
+
+template <>
+std::vector<JsonMember> json_members<SeedsRecord>() {
+  return internal::listed<SeedsRecord>();
 }
 
 json json_of(const SeedsRecord& record) { return internal::record_json(record); }
@@ -143,8 +138,8 @@ std::string seeds_caption(const SeedsFindings& seeds) {
   words += fmt::format(" The best is that of seed {}, with cost {}.", best.seed, quantity(best.cost, "", 4));
   const FiveNumbers cost = spread_of_cost(seeds);
   const auto number = [](double value) { return value == worst ? std::string("none") : quantity(value, "", 4); };
-  words += fmt::format(" Cost: median {}, quartiles {} and {}, from {} to {}.", number(cost[2]), number(cost[1]), number(cost[3]),
-                       number(cost[0]), number(cost[4]));
+  words += fmt::format(" Cost: median {}, quartiles {} and {}, from {} to {}.", number(cost.median), number(cost.lower_quartile),
+                       number(cost.upper_quartile), number(cost.least), number(cost.most));
   std::string failed;
   std::size_t failures = 0;
   constexpr std::size_t most_named = 12;

@@ -19,7 +19,7 @@ template <class A>
 void members(A& a, Metrics& metrics) {
   FigureValues values(metrics);
   a.figures(values, internal::figure_of_no_drive);
-  a("status", metrics.status);
+  a("status", metrics.status, "outcome of the run");
   if constexpr (!A::reads) return;
   metrics.asked = values.asked;
   for (const Figure& figure : all_figures) {
@@ -34,22 +34,22 @@ void members(A& a, Metrics& metrics) {
 
 template <class A>
 void members(A& a, NamedNumber& number) {
-  a("name", number.name);
-  a("unit", number.unit);
-  a("value", number.value);
+  a("name", number.name, "name of the number");
+  a("unit", number.unit, "its unit");
+  a("value", number.value, "its value");
 }
 
 template <class A>
 void members(A& a, Yield& yield) {
-  a("devices", yield.devices);
-  a("share", yield.value);
-  a.pair("interval", yield.interval.low, yield.interval.high);
+  a("devices", yield.devices, "number of devices");
+  a("share", yield.value, "share of all devices");
+  a.pair("interval", yield.interval.low, yield.interval.high, "95 % confidence interval of the share");
 }
 
 template <class A>
 void members(A& a, EstimatedQuantile& quantile) {
-  a("value", internal::OrInfinite{quantile.value});
-  a.pair("interval", quantile.interval.low, quantile.interval.high);
+  a("value", internal::OrInfinite{quantile.value}, "the quantile");
+  a.pair("interval", quantile.interval.low, quantile.interval.high, "95 % confidence interval of the quantile");
 }
 
 }  // namespace softland

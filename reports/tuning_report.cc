@@ -12,6 +12,7 @@
 #include "base/require.h"
 #include "document/escape.h"
 #include "document/quantity.h"
+#include "reports/member_lister.h"
 #include "reports/study_members.h"
 #include "reports/tuning_lines.h"
 #include "waveforms/export.h"
@@ -371,24 +372,50 @@ TuningReport tuning_report(const Tuner& tuner, const std::vector<TunedClosing>& 
   return report;
 }
 
+// The JSON of a ContactRecord, as record_json() writes it.
+struct ContactRecordJson {};
+template <class A>
+void members(A& a, ContactRecordJson&) {
+  a("shot", 0, "number of the shot");
+  a("edges_s", std::vector<std::array<double, 2>>{}, "time of each edge, and 1 (closes) or 0 (opens)");
+  a("closing_time_s", 0.0, "first contact time, instead of the edges");
+  a("bounce_count", 0, "number of openings, beside the closing time");
+  a("loudness", 0.0, "loudness of the closing, if it was measured");
+  a("error", std::string(), "why there is no record");
+}
+
+// The JSON of a TunedBelief, as belief_json() writes it.
+struct NormalBeliefJson {};
+template <class A>
+void members(A& a, NormalBeliefJson&) {
+  a("mean", std::vector<double>{}, "mean of each coordinate");
+  a("covariance", std::vector<std::vector<double>>{}, "covariance of the coordinates");
+}
+struct TunedBeliefJson {};
+template <class A>
+void members(A& a, TunedBeliefJson&) {
+  a("prior", NormalBeliefJson{}, "before the records");
+  a("posterior", NormalBeliefJson{}, "after the records");
+}
+
 template <class A>
 void members(A& a, PredictedRecord& predicted) {
-  a("touches", predicted.touches);
-  a("touch_median_s", predicted.touch_median);
-  a("touch_low_s", predicted.touch_low);
-  a("touch_high_s", predicted.touch_high);
-  a("bounces", predicted.bounces);
-  a("rebound_median_m", predicted.rebound_median);
-  a("rebound_95_m", predicted.rebound_high);
+  a("touches", predicted.touches, "share of the believed devices that touch");
+  a("touch_median_s", predicted.touch_median, "median of the first contact time");
+  a("touch_low_s", predicted.touch_low, "2.5th percentile of the first contact time");
+  a("touch_high_s", predicted.touch_high, "97.5th percentile of the first contact time");
+  a("bounces", predicted.bounces, "share of the believed devices with a recorded opening");
+  a("rebound_median_m", predicted.rebound_median, "median of the highest rebound");
+  a("rebound_95_m", predicted.rebound_high, "95th percentile of the highest rebound");
 }
 
 template <class A>
 void members(A& a, TuningReport::Shot& shot) {
-  a("shot", shot.number);
-  a("waveforms", shot.waveforms);
-  a("hold_s", shot.hold_time);
-  a("expected_cost", shot.expected_cost);
-  a("predicted", shot.predicted);
+  a("shot", shot.number, "number of the shot");
+  a("waveforms", shot.waveforms, "waveform of each drive: time [s], voltage [V]");
+  a("hold_s", shot.hold_time, "time for which the last levels are held");
+  a("expected_cost", shot.expected_cost, "expected cost of the closing");
+  a("predicted", shot.predicted, "prediction for the closing");
 }
 
 template <class A>
@@ -396,59 +423,69 @@ void members(A& a, TuningReport::Closing& closing) {
   members(a, closing.shot);
   a.custom(
       "record", closing.record, [&](const ContactRecord& record) { return record_json(closing.shot.number, record); },
-      [&](const json& line) { return read_record(line, closing.shot.number); });
-  a.derived("bounce_free", is_bounce_free(closing.record));
+      [&](const json& line) { return read_record(line, closing.shot.number); },
+      internal::Like<ContactRecordJson>{"record of the contact"});
+  a.derived("bounce_free", is_bounce_free(closing.record), "whether the record has no opening");
 }
 
 template <class A>
 void members(A& a, BelievedQuantity& quantity) {
-  a("name", quantity.name);
-  a("unit", quantity.unit);
-  a("prior_mean", quantity.prior_mean);
-  a("prior_deviation", quantity.prior_deviation);
-  a("mean", quantity.mean);
-  a("deviation", quantity.deviation);
+  a("name", quantity.name, "name of the quantity");
+  a("unit", quantity.unit, "its unit; empty for a factor");
+  a("prior_mean", quantity.prior_mean, "mean before the records");
+  a("prior_deviation", quantity.prior_deviation, "standard deviation before the records");
+  a("mean", quantity.mean, "mean after the records");
+  a("deviation", quantity.deviation, "standard deviation after the records");
 }
 
 template <class A>
 void members(A& a, TouchMisfit& misfit) {
-  a("least", misfit.least);
-  a("bound", misfit.bound);
-  a("records", misfit.records);
+  a("least", misfit.least, "misfit of the device that fits the records best");
+  a("bound", misfit.bound, "misfit that one in a thousand devices of [spread] exceeds");
+  a("records", misfit.records, "number of records in the misfit");
 }
 
 template <class A>
 void members(A& a, BeliefSummary& belief) {
-  a("quantities", belief.quantities);
-  a("gap_ratio", internal::OrNull{belief.gap_ratio});
-  a("effective_devices", belief.effective_devices);
-  a("touch_misfit", belief.touch_misfit);
-  a("correlated", belief.correlated);
-  a.custom("coordinates", belief.coordinates, belief_json, read_belief);
+  a("quantities", belief.quantities, "quantities of the device");
+  a("gap_ratio", internal::OrNull{belief.gap_ratio}, "ratio of contact gap to electrode gap, relative to the scene");
+  a("effective_devices", belief.effective_devices, "effective number of devices in the belief");
+  a("touch_misfit", belief.touch_misfit, "misfit of the first contact times");
+  a("correlated", belief.correlated, "quantities that the records do not separate, in words");
+  a.custom("coordinates", belief.coordinates, belief_json, read_belief,
+           internal::Like<TunedBeliefJson>{"belief for tuning another device, in coordinates of [spread]"});
 }
 
 template <class A>
 void members(A& a, TuningReport& report) {
   members(a, report.origin);
-  a("status", internal::Chosen{report.end, tuning_ends});
-  a.derived("title", title_of(report.origin));
-  a("closings", report.closings);
-  a("bounce_free_in_a_row", report.bounce_free_in_a_row);
-  a.object("best", [&](auto& best) {
-    members(best, report.kept);
-    best.derived("bounce_free", report.was_bounce_free(report.kept.number));
-    best.derived("landed_last", report.is_bounce_free());
-  });
-  a("next", report.next);
-  a("belief", report.belief);
-  a("broken_assumption", internal::OrNull{report.broken_assumption});
-  a("approach", internal::Chosen{report.approach, approaches});
-  a("step_closing_time_s", report.step_closing_time);
-  a("step_permanent_contact_time_s", report.step_permanent_contact);
-  a("spread_assumed", report.spread_assumed);
-  a("seed", report.seed);
-  a("tolerance", report.tolerance);
-  if (a.has(!report.setting.is_null())) a("tuning", report.setting);
+  a("status", internal::Chosen{report.end, tuning_ends}, "how the tuning ended");
+  a.derived("title", title_of(report.origin), "title of the scene");
+  a("closings", report.closings, "closings so far");
+  a("bounce_free_in_a_row", report.bounce_free_in_a_row, "number of bounce-free closings at the end");
+  a.object(
+      "best",
+      [&](auto& best) {
+        members(best, report.kept);
+        best.derived("bounce_free", report.was_bounce_free(report.kept.number), "whether its closing had no opening");
+        best.derived("landed_last", report.is_bounce_free(), "whether the last closing used it and was bounce-free");
+      },
+      "shot with the best waveform");
+  a("next", report.next, "shot that would come next");
+  a("belief", report.belief, "belief about the device");
+  a("broken_assumption", internal::OrNull{report.broken_assumption}, "sentence on a device that does not match the model");
+  a("approach", internal::Chosen{report.approach, approaches}, "approach to the contact");
+  a("step_closing_time_s", report.step_closing_time, "first contact time of the plain step on the nominal device");
+  a("step_permanent_contact_time_s", report.step_permanent_contact, "its time to permanent contact; for a quasi-static approach");
+  a("spread_assumed", report.spread_assumed, "whether the scene has no [spread] and the usual one was assumed");
+  a("seed", report.seed, "seed of the believed devices");
+  a("tolerance", report.tolerance, "relative tolerance of the integrator");
+  if (a.has(!report.setting.is_null())) a("tuning", report.setting, "settings that a continued tuning must share");
+}
+
+template <>
+std::vector<JsonMember> json_members<TuningReport>() {
+  return internal::listed<TuningReport>();
 }
 
 json json_of(const TuningReport& report) { return internal::record_json(report); }
