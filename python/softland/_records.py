@@ -58,7 +58,7 @@ class Record(Mapping[str, Any]):
     16.209 V
 
     Numbers whose key has a unit are `Quantity`, NaN where the program writes null; lists of them are NumPy arrays (n,).
-    Made by `softland.open`, and by the verbs as `Outcome`.
+    docs/reference/json.md has the keys of each verb. Made by `softland.open`, and by the verbs as `Outcome`.
     """
 
     def __init__(self, data: Mapping[str, Any], errors: Mapping[str, Any] | None = None) -> None:

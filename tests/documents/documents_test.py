@@ -1,9 +1,10 @@
 """documents_test.py CASE PROGRAM: what the documents say holds.
 
-Cases: first_page, howtos, scenes, commands, statuses, results, headlines, published, links, citation. Prints every finding; exit status 1 when there is one.
+Cases: first_page, howtos, scenes, commands, statuses, members, results, headlines, published, links, citation. Prints every finding; exit status 1 when there is one.
 """
 
 import csv
+import functools
 import json
 import math
 import re
@@ -161,6 +162,98 @@ def statuses(program):
         yield "the exit statuses are not found in apps/exit_status.h and softland"
     for status in sorted((ends | launcher) ^ helped, key=int):
         yield f"exit status {status} is not both in the program or launcher and in --help"
+
+
+# docs/reference/json.md has every member of the JSON that the verbs print, and that they write with --out.
+
+MEMBER = re.compile(r"^\| `([^`]+)` \| (.+?) \| ", re.MULTILINE)
+
+
+def member_patterns(section, sections, before=""):
+    """Yields a regular expression for the path of each member of a section of the page, and of the records to whose sections it links.
+
+    A list may be empty. The name of a number may have dots, as a parameter of a waveform has.
+    """
+    for key, kind in MEMBER.findall(sections[section]):
+        path = before + key
+        pattern = re.escape(path).replace("FIGURE", figure_key()).replace(r"\.NAME", r"(?:\.[^.]+)?").replace(r"\[\]", r"(?:\[\])?")
+        yield pattern + (r"(?:\.[^.]+)?" if path.endswith(".NAME") and "record" not in kind and "[" not in kind else "")
+        linked = re.match(r"\[([^]]+)\]\(#", kind)
+        if linked:
+            yield from member_patterns(linked.group(1), sections, path + ".")
+
+
+@functools.cache
+def figure_key():
+    return "(?:" + "|".join(re.findall(r"^\| [^|]+ \| [^|]+ \| `([a-z_A-Z0-9]+)` \|", read("docs/reference/figures.md"), re.MULTILINE)) + ")"
+
+
+def member_paths(record, before=""):
+    """Yields the path of each member of a record of JSON, with [] for the elements of a list of records. The scene has keys of its own."""
+    for key, value in record.items():
+        path = before + key
+        elements = value if isinstance(value, list) else [value]
+        if not any(isinstance(one, dict) for one in elements) or path == "scene":
+            yield path
+            continue
+        path += "[]" if isinstance(value, list) else ""
+        for one in elements:
+            yield path
+            yield from member_paths(one or {}, path + ".")
+
+
+def members_of_page(verb, sections):
+    """Regular expressions, by path on the page, of the members of a verb."""
+    own = ["status", "read"]
+    parts = [verb] if verb in own else ["Every verb", verb] if verb != "optimize" else ["Every verb", "simulate", verb]
+    return [re.compile(one) for part in parts for one in member_patterns(part, sections)]
+
+
+SCENE = "scenes/mem-gold.toml"
+PRINTED = {
+    "simulate": [f"simulate {SCENE} --certify --out OUT", "simulate scenes/two-electrodes.toml --out OUT"],
+    "optimize": [
+        f"optimize {SCENE} --robust none --budget 60 --out OUT",
+        f"optimize {SCENE} --robust cvar:0.9 --budget 600 --samples 16 --out OUT",
+    ],
+    "check": [f"check {SCENE}", "check scenes/two-electrodes.toml"],
+    "pull-in": [f"pull-in {SCENE} --sweep '0 V:20 V:5' --out OUT/sweep", "pull-in scenes/two-electrodes.toml"],
+    "modes": [f"modes {SCENE}"],
+    "explore": [
+        f"explore {SCENE} --vary 'gap.contact=1.9 um:2.1 um:2' --out OUT/map.sqlite",
+        f"explore {SCENE} --vary 'gap.contact=1.6 um:2.4 um' --pareto initial_contact_time,impact_velocity --sample nsga2:8 --out OUT/front.sqlite",
+    ],
+    "status": ["status OUT/map.sqlite"],
+    "read": ["read OUT/scope.csv"],
+}
+WRITTEN_BY_HAND = ("explore", "status", "read")  # their members stand in reference_pages.cc
+
+
+def members(program):
+    sections = dict(re.findall(r"^## ([^\n]+)\n\n(.*?)(?=^## |\Z)", read("docs/reference/json.md"), re.MULTILINE | re.DOTALL))
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "scope.csv").write_text("time_s,CH1_V\n0,0\n1e-6,1\n2e-6,2\n", encoding="utf-8")
+        for verb, commands_of_verb in PRINTED.items():
+            known = members_of_page(verb, sections)
+            paths = set()
+            for command in commands_of_verb:
+                words = shlex.split(command.replace("OUT", folder))
+                done = run(program, *words, "--json", "-", cwd=ROOT)
+                try:
+                    records = [json.loads(done.stdout)]
+                except ValueError:
+                    yield f"{command} prints no JSON: {done.stderr}"
+                    continue
+                result = Path(folder) / "result.json"
+                if command.endswith("--out OUT"):
+                    records.append(json.loads(result.read_text(encoding="utf-8")))
+                paths |= {path for record in records for path in member_paths(record)}
+            for path in sorted(paths):
+                if not any(one.fullmatch(path) for one in known):
+                    yield f"docs/reference/json.md lacks {path} of {verb}"
+            for one in known if verb in WRITTEN_BY_HAND else []:
+                if not any(one.fullmatch(path) for path in paths) and not one.pattern.startswith("scene"):
+                    yield f"docs/reference/json.md has {one.pattern}, which {verb} does not print"
 
 
 # results/README.md has one line for every file beside it.
@@ -358,7 +451,7 @@ def citation(program):
 
 def main():
     case, program = sys.argv[1:]
-    cases = (first_page, howtos, scenes, commands, statuses, results, headlines, published, links, citation)
+    cases = (first_page, howtos, scenes, commands, statuses, members, results, headlines, published, links, citation)
     findings = list({function.__name__: function for function in cases}[case](program))
     for finding in findings:
         print(finding)

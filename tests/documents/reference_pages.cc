@@ -1,5 +1,6 @@
 // reference_pages PAGE: prints a page of the reference from the tables of the code. PAGE is `keys`, the keys of a scene,
-// `figures`, the figures of merit, or `targets`, the targets of a search.
+// `figures`, the figures of merit, `targets`, the targets of a search, or `json`, the members of the JSON of verbs.
+#include <cxxabi.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,16 +9,37 @@
 #include <cctype>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
+#include <map>
+#include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/engineering.h"
+#include "base/split.h"
 #include "config/schema.h"
 #include "objectives/cost.h"
 #include "objectives/figures.h"
+#include "reports/accuracy_report.h"
+#include "reports/check_report.h"
+#include "reports/closing_record.h"
+#include "reports/cycle_report.h"
+#include "reports/effects_report.h"
+#include "reports/fit_report.h"
+#include "reports/limit_report.h"
+#include "reports/measurement_report.h"
+#include "reports/mode_table_report.h"
+#include "reports/origin.h"
+#include "reports/pull_in_report.h"
+#include "reports/record_members.h"
+#include "reports/release_report.h"
+#include "reports/robustness_report.h"
+#include "reports/seeds_report.h"
+#include "reports/tuning_report.h"
 
 namespace softland {
 namespace {
@@ -180,8 +202,7 @@ std::string link_to(std::string_view title) {
 }
 
 // Prints links in lines of at most 130 columns.
-void print_links(const std::vector<std::string>& titles) {
-  std::string line = "Sections:";
+void print_links(const std::vector<std::string>& titles, std::string line = "Sections:") {
   for (std::size_t i = 0; i < titles.size(); ++i) {
     const std::string link = link_to(titles[i]) + (i + 1 < titles.size() ? "," : ".");
     if (line.size() + 1 + link.size() > 130) {
@@ -301,6 +322,295 @@ void print_targets() {
   }
 }
 
+// The JSON of verbs.
+
+using Members = std::vector<JsonMember>;
+
+// Endings of keys with the unit of the value; of two endings that fit, the longer one stands first.
+constexpr auto key_endings = std::to_array<std::pair<std::string_view, std::string_view>>({{"_rad2_s2", "rad²/s²"},
+                                                                                           {"_rad_s", "rad/s"},
+                                                                                           {"_m_s", "m/s"},
+                                                                                           {"_V_s", "V/s"},
+                                                                                           {"_ohm", "ohm"},
+                                                                                           {"_1_s", "1/s"},
+                                                                                           {"_Hz", "Hz"},
+                                                                                           {"_s", "s"},
+                                                                                           {"_m", "m"},
+                                                                                           {"_V", "V"},
+                                                                                           {"_N", "N"},
+                                                                                           {"_J", "J"},
+                                                                                           {"_C", "C"},
+                                                                                           {"_F", "F"}});
+
+// Returns "waveforms" of "waveforms.NAME", and "rows" of "rows[]".
+std::string_view word_of(const JsonMember& member) {
+  const std::string_view key = member.key;
+  return key.substr(0, key.find_first_of(".["));
+}
+
+std::string_view unit_of(const JsonMember& member) {
+  const auto found = std::ranges::find_if(key_endings, [&](const auto& one) { return word_of(member).ends_with(one.first); });
+  return found == key_endings.end() ? "" : found->second;
+}
+
+// A record with a section of its own, because several members are such records.
+struct SharedRecord {
+  std::string title;
+  Members members;
+};
+
+// The records of the page, by the name of their C++ type.
+struct Records {
+  std::map<std::string, int> uses;
+  std::map<std::string, std::string> titles;  ///< titles of the sections of shared records
+  std::vector<SharedRecord> shared;           ///< shared records in the order of their first use
+};
+
+void count_uses(const Members& members, Records& records) {
+  for (const JsonMember& member : members) {
+    // The members of a record that was seen already are counted once.
+    if (member.record.empty() || records.uses[member.record]++ == 0) count_uses(member.members, records);
+  }
+}
+
+// Returns "Least time" of softland::LeastTime, and "Run of release" of softland::ReleaseRecord::Run.
+std::string title_of_type(const std::string& name) {
+  int status = 0;
+  const std::unique_ptr<char, void (*)(void*)> whole(abi::__cxa_demangle(name.c_str(), nullptr, nullptr, &status), std::free);
+  std::vector<std::string> types;
+  for (const std::string& part : split(whole.get(), ':')) {
+    if (part.empty() || std::islower(static_cast<unsigned char>(part.front())) != 0) continue;  // a namespace
+    std::string& own = types.emplace_back();
+    for (const char c : part.substr(0, part.find("Json"))) {
+      const bool is_upper = std::isupper(static_cast<unsigned char>(c)) != 0;
+      if (is_upper && !own.empty()) own += ' ';
+      own += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  std::string words = types.back();
+  if (types.size() > 1) words += fmt::format(" of {}", types.front().substr(0, types.front().find(" record")));
+  words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
+  return words;
+}
+
+// Names the shared records.
+void name_shared(const Members& members, Records& records) {
+  for (const JsonMember& member : members) {
+    const bool is_shared = !member.record.empty() && records.uses[member.record] > 1;
+    if (is_shared && records.titles.contains(member.record)) continue;
+    if (is_shared) {
+      const std::string title = title_of_type(member.record);
+      records.titles[member.record] = title;
+      records.shared.push_back({title, member.members});
+    }
+    name_shared(member.members, records);
+  }
+}
+
+void print_members(const Members& members, const std::string& before, const Records& records) {
+  constexpr std::size_t most_characters = 140;
+  for (const JsonMember& member : members) {
+    const std::string path = before + member.key;
+    const auto shared = records.titles.find(member.record);
+    const bool is_shared = !member.record.empty() && shared != records.titles.end();
+    if (member.about.empty() || member.about.size() > most_characters)
+      throw std::logic_error(fmt::format("{}: has no meaning of at most {} characters", path, most_characters));
+    fmt::print("| {} | {} | {} | {} |\n", code(path), is_shared ? link_to(shared->second) : member.type, unit_of(member),
+               cell(member.about));
+    if (!is_shared) print_members(member.members, path + ".", records);
+  }
+}
+
+void print_section(const std::string& title, const std::string& words, const Members& members, const Records& records) {
+  fmt::print("\n## {}\n\n{}| member | type | unit | meaning |\n|---|---|---|---|\n", title, words.empty() ? "" : words + "\n\n");
+  print_members(members, "", records);
+}
+
+// Returns the members that `others` lacks. A record of both has only the members that it has more.
+Members besides(const Members& members, const Members& others) {
+  Members more;
+  for (const JsonMember& member : members) {
+    const auto other = std::ranges::find(others, member.key, &JsonMember::key);
+    if (other == others.end()) {
+      more.push_back(member);
+    } else if (Members inside = besides(member.members, other->members); !inside.empty()) {
+      for (JsonMember& one : inside) {
+        one.key.insert(0, member.key + ".");
+        more.push_back(std::move(one));
+      }
+    }
+  }
+  return more;
+}
+
+// The JSON of these verbs has no list of members in the code. A test compares these with what the verbs print.
+const Members& explored_members() {
+  static const Members all{
+      {.key = "kind", .type = "text", .about = "`exploration`"},
+      {.key = "status", .type = "text", .about = "`done` or `interrupted`"},
+      {.key = "variables[]",
+       .type = "record",
+       .about = "varied keys",
+       .members = {{.key = "name", .type = "text", .about = "name of the variable"},
+                   {.key = "unit", .type = "text", .about = "its unit"},
+                   {.key = "column", .type = "text", .about = "its column in the store"}}},
+      {.key = "figures.NAME",
+       .type = "record",
+       .about = "range of each column of figures",
+       .members = {{.key = "least", .type = "number", .about = "least value"},
+                   {.key = "least_at", .type = "whole number", .about = "its point"},
+                   {.key = "most", .type = "number", .about = "largest value"},
+                   {.key = "most_at", .type = "whole number", .about = "its point"}}},
+      {.key = "by_status.NAME", .type = "whole number", .about = "number of points by outcome"},
+      {.key = "plan", .type = "text", .about = "hash of the plan"},
+      {.key = "study", .type = "text", .about = "study at each point"},
+      {.key = "seed", .type = "whole number", .about = "seed of the points"},
+      {.key = "points", .type = "whole number", .about = "number of points"},
+      {.key = "planned", .type = "whole number", .about = "number of planned points; with `--pareto` and of `report`"},
+      {.key = "shard", .type = "text", .about = "part of the points, as part/parts"},
+      {.key = "rows",
+       .type = "record",
+       .about = "rows of the store",
+       .members = {{.key = "known", .type = "whole number", .about = "rows that were there"},
+                   {.key = "computed", .type = "whole number", .about = "rows of this run"},
+                   {.key = "reused", .type = "whole number", .about = "rows copied from an earlier plan"},
+                   {.key = "remaining", .type = "whole number", .about = "points that are left"}}},
+      {.key = "work",
+       .type = "record",
+       .about = "cost of the run",
+       .members = {{.key = "wall_s", .type = "number", .about = "elapsed time"},
+                   {.key = "store_s", .type = "number", .about = "time that waited for the store"},
+                   {.key = "jobs", .type = "whole number", .about = "number of threads"}}},
+      {.key = "store", .type = "text", .about = "file of the store"},
+      {.key = "termination", .type = "text", .about = "why the search of `--pareto` ended"},
+      {.key = "pareto",
+       .type = "record",
+       .about = "Pareto front of `--pareto`",
+       .members = {
+           {.key = "aims[]",
+            .type = "record",
+            .about = "figures of the front",
+            .members = {{.key = "figure", .type = "text", .about = "column of the figure"},
+                        {.key = "better", .type = "text", .about = "`small` or `large`"}}},
+           {.key = "front[]",
+            .type = "record",
+            .about = "points of the front",
+            .members = {{.key = "point", .type = "whole number", .about = "number of the point"},
+                        {.key = "values.NAME", .type = "number", .about = "value of each column"}}},
+           {.key = "knee", .type = "whole number", .about = "point where the front bends most"},
+           {.key = "reference.NAME", .type = "number", .about = "worst value of each figure, from which the hypervolume counts"},
+           {.key = "hypervolume", .type = "number", .about = "hypervolume of the front"},
+           {.key = "hypervolume_share", .type = "number", .about = "its share of the box from the best to the worst values"}}}};
+  return all;
+}
+
+const Members& status_members() {
+  static const Members all{
+      {.key = "stores[]",
+       .type = "record",
+       .about = "the stores",
+       .members = {{.key = "store", .type = "text", .about = "file of the store"},
+                   {.key = "plan", .type = "text", .about = "hash of the plan"},
+                   {.key = "seed", .type = "whole number", .about = "seed of the plan"},
+                   {.key = "shard", .type = "text", .about = "part of the points, as part/parts"},
+                   {.key = "points", .type = "whole number", .about = "number of points"},
+                   {.key = "done", .type = "whole number", .about = "number of rows"},
+                   {.key = "by_status.NAME", .type = "whole number", .about = "number of rows by outcome"},
+                   {.key = "rate_1_s", .type = "number", .about = "rows per second of the last run"},
+                   {.key = "writer", .type = "text", .about = "process that writes to the store; null: none"},
+                   {.key = "sessions[]",
+                    .type = "record",
+                    .about = "runs that wrote to the store",
+                    .members = {{.key = "program", .type = "text", .about = "program"},
+                                {.key = "processor", .type = "text", .about = "processor, vector instructions and C library"},
+                                {.key = "command", .type = "text", .about = "command line"},
+                                {.key = "host", .type = "text", .about = "name of the machine"},
+                                {.key = "process", .type = "whole number", .about = "number of the process"},
+                                {.key = "began", .type = "text", .about = "begin, in UTC"},
+                                {.key = "last", .type = "text", .about = "last row, in UTC"},
+                                {.key = "seconds", .type = "number", .about = "duration [s]"},
+                                {.key = "rows", .type = "whole number", .about = "number of rows"}}}}},
+      {.key = "points", .type = "whole number", .about = "number of points of all stores"},
+      {.key = "done", .type = "whole number", .about = "number of rows of all stores"}};
+  return all;
+}
+
+const Members& recording_members() {
+  static const Members all{
+      {.key = "format", .type = "text", .about = "format of the file"},
+      {.key = "time",
+       .type = "record",
+       .about = "times of the file",
+       .members = {{.key = "first_s", .type = "number", .about = "first time"},
+                   {.key = "last_s", .type = "number", .about = "last time"},
+                   {.key = "interval_s", .type = "number", .about = "time between samples; null where it differs"},
+                   {.key = "repeated", .type = "whole number", .about = "number of repeated times"}}},
+      {.key = "channels[]",
+       .type = "record",
+       .about = "channels of the file",
+       .members = {{.key = "name", .type = "text", .about = "name of the channel"},
+                   {.key = "unit", .type = "text", .about = "its unit in the file"},
+                   {.key = "samples", .type = "whole number", .about = "number of samples"},
+                   {.key = "first", .type = "number", .about = "first sample [unit of the channel]"},
+                   {.key = "last", .type = "number", .about = "last sample"},
+                   {.key = "minimum", .type = "number", .about = "smallest sample"},
+                   {.key = "maximum", .type = "number", .about = "largest sample"}}},
+      {.key = "left_out", .type = "list of texts", .about = "data that were not read"},
+      {.key = "notes", .type = "list of texts", .about = "assumptions about the file"}};
+  return all;
+}
+
+struct JsonSection {
+  std::string title, words;
+  Members members;
+};
+
+void print_json() {
+  const Members origin = json_members<Origin>(), closing = json_members<ClosingRecord>();
+  const auto of_verb = [&](const Members& members) { return besides(members, origin); };
+  const std::vector<JsonSection> sections{
+      {"Every verb",
+       "The JSON of `read` and `status` lacks these members. [Commands](../commands.md#the-same-result-again) explains `made_with`.",
+       origin},
+      {"simulate", "The JSON of `--json` lacks `best`, `curves` and `scene_toml`.", of_verb(closing)},
+      {"optimize", "These members come beside those of [simulate](#simulate). The JSON of `--json` lacks `curves` and `search`.",
+       besides(of_verb(json_members<SearchRecord>()), closing)},
+      {"optimize --seeds", "This is the JSON of interrupted searches.", of_verb(json_members<SeedsRecord>())},
+      {"check", "", of_verb(json_members<CheckRecord>())},
+      {"pull-in", "The members of a single electrode are repeated at the top.", of_verb(json_members<PullInsRecord>())},
+      {"modes", "With `--from` the JSON has the members of the file.", of_verb(json_members<ModesRecord>())},
+      {"effects", "", of_verb(json_members<EffectsRecord>())},
+      {"accuracy", "", of_verb(json_members<AccuracyRecord>())},
+      {"limit", "", of_verb(json_members<LimitRecord>())},
+      {"release", "", of_verb(json_members<ReleaseRecord>())},
+      {"cycle", "", of_verb(json_members<CycleRecord>())},
+      {"robustness", "", of_verb(json_members<RobustnessRecord>())},
+      {"calibrate", "", of_verb(json_members<MeasurementsRecord>())},
+      {"fit", "", of_verb(json_members<FitRecord>())},
+      {"tune", "", of_verb(json_members<TuningReport>())},
+      {"explore", "The file exploration.json of `report` has a part of these members.", explored_members()},
+      {"status", "", status_members()},
+      {"read", "", recording_members()}};
+  Records records;
+  for (const JsonSection& section : sections) count_uses(section.members, records);
+  for (const JsonSection& section : sections) name_shared(section.members, records);
+  fmt::print(
+      "# Members of the JSON\n\n"
+      "*For everyone who reads a JSON of softland with a program: which members has it, and what do they mean?*\n\n"
+      "This page is made from the lists of members by which softland writes and reads JSON. [Files of a search](../outputs.md) says\n"
+      "which files hold it.\n\n"
+      "- `best.cost` is the member `cost` of the record `best`. `rows[]` is each record of a list, and `drives.NAME` that of any name.\n"
+      "- `FIGURE` is the key of a [figure of merit](figures.md). Counts are whole numbers, and `settled` is true or false.\n"
+      "- The unit stands at the end of the key. A number or record that is not known is null.\n"
+      "- A member that makes no sense for a run is absent.\n"
+      "- A type with a link is a record that several members are. It has a table below those of the verbs.\n\n");
+  std::vector<std::string> titles;
+  for (const JsonSection& section : sections) titles.push_back(section.title);
+  print_links(titles, "Verbs:");
+  for (const JsonSection& section : sections) print_section(section.title, section.words, section.members, records);
+  for (const SharedRecord& one : records.shared) print_section(one.title, "", one.members, records);
+}
+
 }  // namespace
 }  // namespace softland
 
@@ -312,8 +622,10 @@ int main(int count, char** arguments) {
     softland::print_figures();
   } else if (page == "targets") {
     softland::print_targets();
+  } else if (page == "json") {
+    softland::print_json();
   } else {
-    std::fputs("usage: reference_pages keys|figures|targets\n", stderr);
+    std::fputs("usage: reference_pages keys|figures|targets|json\n", stderr);
     return 2;
   }
   return 0;
