@@ -328,7 +328,7 @@ const Closing* last_record(const std::vector<Closing>& closings) {
 
 }  // namespace
 
-bool TuningReport::is_bounce_free() const {
+bool TuningReport::ended_bounce_free() const {
   const Closing* const last = last_record(closings);
   return last != nullptr && last->shot.number == kept.number && is_bounce_free(last->record);
 }
@@ -468,7 +468,7 @@ void members(A& a, TuningReport& report) {
       [&](auto& best) {
         members(best, report.kept);
         best.derived("bounce_free", report.was_bounce_free(report.kept.number), "whether its closing had no opening");
-        best.derived("landed_last", report.is_bounce_free(), "whether the last closing used it and was bounce-free");
+        best.derived("landed_last", report.ended_bounce_free(), "whether the last closing used it and was bounce-free");
       },
       "shot with the best waveform");
   a("next", report.next, "shot that would come next");

@@ -66,7 +66,7 @@ struct TuningReport {
   /// Returns true if any closing of the device was recorded without a bounce.
   [[nodiscard]] bool ever_bounce_free() const;
   /// Returns true if the last closing of the real device used the waveform `kept` and had no bounce.
-  [[nodiscard]] bool is_bounce_free() const;
+  [[nodiscard]] bool ended_bounce_free() const;
 };
 /// Returns the waveform that a tuning keeps as its best. After the end of the tuning, this is the waveform of the last closing
 /// if that closing was bounce-free.

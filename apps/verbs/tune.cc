@@ -161,7 +161,7 @@ int run_tune(const Common& c, const verbs::Arguments& arguments) {
                 terminal_text(tuning_document(report)) +
                     files_written(tuning.folder().path(), {"tune.html", "tune.json", "best.toml", "best.csv", log_file}));
   if (end == TuningEnd::interrupted) return exit_interrupted;
-  return report.is_bounce_free() ? exit_done : exit_no_success;
+  return report.ended_bounce_free() ? exit_done : exit_no_success;
 }
 
 }  // namespace softland::apps

@@ -143,16 +143,16 @@ TEST(TuningReport, SaysHowLateRecordsBegin) {
 
 TEST(TuningReport, LandsWhereTheLastClosingWasOfTheWaveformKept) {
   TuningReport report = tuned_sample();
-  EXPECT_FALSE(report.is_bounce_free()) << "shot 5 is kept, and 6 was the last";
+  EXPECT_FALSE(report.ended_bounce_free()) << "shot 5 is kept, and 6 was the last";
   report.kept = tuned_shot(6);
-  EXPECT_TRUE(report.is_bounce_free());
+  EXPECT_TRUE(report.ended_bounce_free());
   EXPECT_EQ(json_of(report)["best"]["landed_last"], true);
   report.closings.back().record.bounce_count = 1;
-  EXPECT_FALSE(report.is_bounce_free());
+  EXPECT_FALSE(report.ended_bounce_free());
   report.closings.pop_back();
   report.closings.push_back({.shot = tuned_shot(6), .record = {.error = "no trigger"}});
   report.kept = tuned_shot(5);
-  EXPECT_TRUE(report.is_bounce_free()) << "a shot without a record is no closing";
+  EXPECT_TRUE(report.ended_bounce_free()) << "a shot without a record is no closing";
 }
 
 TEST(TuningReport, PutsOnlyTextIntoItsPage) {
