@@ -141,12 +141,12 @@ std::vector<PointFigure> pull_in_figures(const Device& device) {
 
 std::vector<PointFigure> robustness_figures(const AskedFigures& asked) {
   std::vector<PointFigure> figures;
-  figures.push_back({"closing_yield", "Share that closes", ""});
-  figures.push_back({"bounce_free_yield", "Share without a rebound", ""});
+  figures.push_back({"closing_yield", "Yield of closing devices", ""});
+  figures.push_back({"bounce_free_yield", "Yield of bounce-free devices", ""});
   for (const Figure& figure : asked_among(device_figures, asked)) {
     for (const double p : shown_quantiles)
       figures.push_back({fmt::format("{}_q{:g}", figure.quantity(), 100 * p),
-                         fmt::format("{}, {:g} % of devices below", figure.name, 100 * p), std::string(figure.unit)});
+                         fmt::format("{}, {:g}th percentile", figure.name, 100 * p), std::string(figure.unit)});
   }
   return figures;
 }
