@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "objectives/figure_values.h"
+
 namespace softland {
 
 std::string Figure::label() const {

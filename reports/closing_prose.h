@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "objectives/figures.h"
+#include "objectives/figure_values.h"
 #include "reports/closing_record.h"
 
 namespace softland::internal {

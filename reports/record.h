@@ -22,7 +22,7 @@
 
 #include "base/choice.h"
 #include "document/json_number.h"
-#include "objectives/figures.h"
+#include "objectives/figure_values.h"
 
 namespace softland::internal {
 

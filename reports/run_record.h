@@ -12,7 +12,7 @@
 
 #include "document/chart.h"
 #include "model/closing.h"
-#include "objectives/figures.h"
+#include "objectives/figure_values.h"
 #include "studies/closing/shown_motion.h"
 
 namespace softland {

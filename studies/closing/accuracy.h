@@ -21,7 +21,7 @@
 
 #include "base/clock.h"
 #include "model/closing.h"
-#include "objectives/figures.h"
+#include "objectives/figure_values.h"
 #include "studies/closing/cloud.h"
 #include "studies/closing/prepared.h"
 

@@ -10,7 +10,7 @@
 #include "base/engineering.h"
 #include "model/closing.h"
 #include "model/constants.h"
-#include "objectives/figures.h"
+#include "objectives/figure_values.h"
 #include "studies/closing/by_modes.h"
 #include "studies/closing/closed_state.h"
 #include "studies/closing/closing_progress.h"

@@ -8,7 +8,7 @@
 
 #include "base/progress.h"
 #include "model/closing.h"
-#include "objectives/figures.h"
+#include "objectives/figure_values.h"
 #include "studies/closing/hold.h"
 #include "studies/closing/open_command.h"
 #include "studies/closing/prepared.h"

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "objectives/figures.h"
+#include "objectives/figure_values.h"
 #include "sampling/interval.h"
 #include "studies/devices/ensemble.h"
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "objectives/figures.h"
+#include "objectives/figure_values.h"
 #include "studies/devices/hold_window.h"
 #include "studies/search/robust_optimize.h"
 

@@ -101,8 +101,8 @@ void share_budget(OptimizeOptions& options, RobustSearchOptions& devices) {
 }
 
 bool has_better_yield(const DevicesRow& a, const DevicesRow& b) {
-  const double lands = std::max(a.judged.bounce_free.value, b.judged.bounce_free.value);
-  if (lands >= half_is_bounce_free) return a.judged.bounce_free.value > b.judged.bounce_free.value;
+  if (std::max(a.judged.bounce_free.value, b.judged.bounce_free.value) >= half_is_bounce_free)
+    return a.judged.bounce_free.value > b.judged.bounce_free.value;
   return quantile_95(a.judged.outcomes, judged_figures[0]) < quantile_95(b.judged.outcomes, judged_figures[0]);
 }
 
@@ -324,8 +324,8 @@ bool RobustSearch::says_when_to_close() const {
 // budget. The limit is between the shares least_of_tournament and end_of_tournament of the time budget, less `reserved` [s] for
 // other work.
 void RobustSearch::reserve_for_verdict(double closing, double reserved) {
-  constexpr double rows =
-      20;  // work per fresh device, in closings of a search: long closings, calibrated closings, closings for the Pareto front
+  // Work per fresh device, in closings of a search: long closings, calibrated closings, closings for the Pareto front.
+  constexpr double rows = 20;
   const double verdict = rows * static_cast<double>(verdict_) * closing, all = options_.max_seconds;
   const double end = std::clamp(all - verdict, least_of_tournament * all, end_of_tournament * all) - reserved;
   before_verdict_.emplace(budget_, budget_.left(), end - budget_.elapsed());
@@ -406,12 +406,6 @@ void RobustSearch::look(const Contender& contender) {
 
 const ChosenFrom* RobustSearch::leader() const {
   return leader_ && leader_->candidate.is_good_enough ? &leader_->candidate : nullptr;
-}
-
-std::vector<ChosenFrom> RobustSearch::looked_at() const {
-  std::vector<ChosenFrom> all;
-  for (const Placed& one : looked_at_) all.push_back(one.candidate);
-  return all;
 }
 
 void RobustSearch::place(ChosenFrom one) {
@@ -501,10 +495,6 @@ std::vector<ChosenFrom> RobustSearch::placed() const {
   std::vector<ChosenFrom> all;
   for (Placed& one : sorted) all.push_back(std::move(one.candidate));
   return all;
-}
-
-std::size_t RobustSearch::good_enough() const {
-  return static_cast<std::size_t>(std::ranges::count_if(placed_, [](const Placed& one) { return one.candidate.is_good_enough; }));
 }
 
 }  // namespace softland

@@ -3,6 +3,7 @@
 // need the waveform of the nominal design.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -170,11 +171,18 @@ class RobustSearch {
   [[nodiscard]] const ChosenFrom* leader() const;
   /// Returns the candidates that were evaluated while the tournament ran, with their performance on the devices on which the
   /// best one is chosen.
-  [[nodiscard]] std::vector<ChosenFrom> looked_at() const;
+  [[nodiscard]] std::vector<ChosenFrom> looked_at() const {
+    std::vector<ChosenFrom> all;
+    for (const Placed& one : looked_at_) all.push_back(one.candidate);
+    return all;
+  }
   [[nodiscard]] const std::vector<DeviceOutcome>& step_on_others() const { return step_on_others_; }
   /// Returns the ranked candidate waveforms, the best first; candidates with ChosenFrom::is_good_enough come before all others.
   [[nodiscard]] std::vector<ChosenFrom> placed() const;
-  [[nodiscard]] std::size_t good_enough() const;
+  [[nodiscard]] std::size_t good_enough() const {
+    const auto found = std::ranges::count_if(placed_, [](const Placed& one) { return one.candidate.is_good_enough; });
+    return static_cast<std::size_t>(found);
+  }
   /// Searches with a per-device calibration, starting at the best waveform `winner` and at the nominal design's waveform
   /// `drawing`. The result has no rows if devices cannot be measured.
   [[nodiscard]] CalibratedSearch in_measured_units(const ChosenFrom& winner, const DriveWaveforms& nominal);

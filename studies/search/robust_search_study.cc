@@ -470,7 +470,6 @@ class RobustSearchStudy {
   }
 
   [[nodiscard]] DevicesFindings& findings() { return result_->findings; }
-
   const SceneFile& file_;
   const OptimizeOptions& options_;
   const RobustSearchOptions& devices_;
@@ -483,15 +482,10 @@ class RobustSearchStudy {
   // The best candidate with the electrode's plain step at t = 0. It gets a row of results, for comparison, if the search may
   // choose the instant of this step.
   std::optional<ChosenFrom> undelayed_;
-  // Search over devices in another thread; the last member, since it uses the others until it is destroyed.
-  std::future<void> beside_;
+  std::future<void> beside_;  // search over devices in another thread; the last member, since it uses the others
 };
 
 }  // namespace
-
-DevicesRow& RobustSearchResult::row_of_devices() {
-  return *std::ranges::find(rows, std::string_view(for_the_devices), &DevicesRow::name);
-}
 
 bool RobustSearchResult::plain_step_is_bounce_free() const {
   return !verdict.drives.empty() && quantile_95(verdict.drives.front().outcomes, key_of(&Metrics::major_bounce_height)) <=
@@ -499,10 +493,7 @@ bool RobustSearchResult::plain_step_is_bounce_free() const {
 }
 
 RobustSearchResult robust_search(const SceneFile& file, const OptimizeOptions& options, const RobustSearchOptions& devices) {
-  require(
-      options.own_waveforms.empty(),
-      "own waveforms are searched for the drawing, or over devices by one measure: the race of families over devices does not "
-      "take them");
+  require(options.own_waveforms.empty(), "own waveforms are searched for the nominal design, or over devices by one measure");
   return RobustSearchStudy(file, options, devices).run();
 }
 

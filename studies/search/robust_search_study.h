@@ -30,6 +30,7 @@
 // Stages last a number of closings, not a time, so that the result is a function of scene, options and seed.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -80,7 +81,9 @@ struct RobustSearchResult {
   bool interrupted = false;
 
   /// Returns the row for the best waveform in the table of results; call it only after the final evaluation.
-  [[nodiscard]] DevicesRow& row_of_devices();
+  [[nodiscard]] DevicesRow& row_of_devices() {
+    return *std::ranges::find(rows, std::string_view(for_the_devices), &DevicesRow::name);
+  }
   /// True if the 95th percentile of the rebound height under the plain step, over the fresh devices, is not significant.
   [[nodiscard]] bool plain_step_is_bounce_free() const;
 };

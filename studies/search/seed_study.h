@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "objectives/figures.h"
+#include "objectives/figure_values.h"
 #include "store/study_store.h"
 #include "studies/search/evaluation_store.h"
 #include "studies/search/optimize.h"

@@ -1,6 +1,4 @@
 // The table of figures: it has every figure once, with a meaning, and reads each from its own member.
-#include "objectives/figures.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <set>
 
 #include "objectives/cost.h"
+#include "objectives/figure_values.h"
 
 namespace softland {
 namespace {
