@@ -8,6 +8,7 @@
 
 #include "model/linearized_closing.h"
 #include "objectives/cost.h"
+#include "objectives/figure_values.h"
 
 namespace softland {
 

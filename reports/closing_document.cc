@@ -11,6 +11,7 @@
 #include "document/escape.h"
 #include "document/page.h"
 #include "document/quantity.h"
+#include "objectives/figure_values.h"
 #include "reports/closing_captions.h"
 #include "reports/closing_charts.h"
 #include "reports/closing_prose.h"

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "objectives/figure_values.h"
 #include "reports/closing_record.h"
 #include "reports/devices_members.h"
 #include "reports/record.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "document/quantity.h"
+#include "objectives/figure_values.h"
 
 namespace softland::internal {
 namespace {

@@ -12,6 +12,7 @@
 #include "base/require.h"
 #include "document/downsample.h"
 #include "integrators/quintic.h"
+#include "objectives/figure_values.h"
 #include "reports/closing_record.h"
 #include "reports/robustness_prose.h"
 #include "studies/closing/effect_ablation.h"

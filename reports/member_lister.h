@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "objectives/figure_values.h"
 #include "reports/record.h"
 #include "reports/record_members.h"
 

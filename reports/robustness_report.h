@@ -13,6 +13,7 @@
 
 #include "base/progress.h"
 #include "document/document.h"
+#include "objectives/figure_values.h"
 #include "reports/closing_record.h"
 #include "reports/origin.h"
 #include "studies/devices/box_and_chaos.h"

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "objectives/figure_values.h"
 #include "reports/run_record.h"
 #include "studies/search/devices_findings.h"
 #include "studies/search/optimize.h"

@@ -4,6 +4,7 @@
 #include <string>
 #include <variant>
 
+#include "objectives/figure_values.h"
 #include "reports/closing_members.h"
 #include "reports/origin.h"
 #include "reports/record.h"

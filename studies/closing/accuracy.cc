@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "base/engineering.h"
+#include "objectives/figure_values.h"
 #include "studies/closing/open_command.h"
 
 namespace softland {

@@ -6,6 +6,7 @@
 
 #include "base/executor.h"
 #include "base/random.h"
+#include "objectives/figure_values.h"
 
 namespace softland {
 

@@ -9,6 +9,7 @@
 #include "model/closing.h"
 #include "model/forces/electrostatic.h"
 #include "model/gas/gas_law.h"
+#include "objectives/figure_values.h"
 #include "studies/closing/closing_progress.h"
 #include "studies/closing/open_command.h"
 #include "studies/closing/timing.h"

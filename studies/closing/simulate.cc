@@ -10,6 +10,7 @@
 #include "base/engineering.h"
 #include "model/constants.h"
 #include "objectives/course_recorder.h"
+#include "objectives/figure_values.h"
 #include "studies/closing/closing_progress.h"
 #include "studies/closing/judged_by_modes.h"
 #include "studies/closing/open_command.h"

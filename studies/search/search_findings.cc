@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "objectives/figure_values.h"
 #include "studies/search/step_comparison.h"
 
 namespace softland {
