@@ -596,7 +596,7 @@ void print_json() {
   for (const JsonSection& section : sections) name_shared(section.members, records);
   fmt::print(
       "# Members of the JSON\n\n"
-      "*For everyone who reads a JSON of softland with a program: which members has it, and what do they mean?*\n\n"
+      "*For everyone who reads a JSON of softland with a program: which members are there, and what do they mean?*\n\n"
       "This page is made from the lists of members by which softland writes and reads JSON. [Files of a search](../outputs.md) says\n"
       "which files hold it.\n\n"
       "- `best.cost` is the member `cost` of the record `best`. `rows[]` is each record of a list, and `drives.NAME` that of any name.\n"
