@@ -29,11 +29,16 @@ void WorkPace::note(std::string_view what, double part, double elapsed) {
   part_ = part;
 }
 
+std::optional<double> WorkPace::seconds_left(double elapsed) const {
+  constexpr double least_done = 0.01;  // share of a stage to compute before its remaining time is estimated
+  const double done = part_ - first_part_;
+  if (done < least_done || part_ >= 1) return std::nullopt;
+  return (elapsed - began_) * (1 - part_) / done;
+}
+
 std::string WorkPace::words(double elapsed) const {
-  constexpr double least_told = 0.01;  // share of a stage to compute before its remaining time is estimated
-  std::string text = fmt::format("{}: {:.0f} %, {:.0f} s", what_, 100 * std::clamp(part_, 0.0, 1.0), elapsed);
-  if (const double done = part_ - first_part_; done >= least_told)
-    text += fmt::format(", about {:.0f} s left", std::max(0.0, (elapsed - began_) * (1 - part_) / done));
+  std::string text = fmt::format("{}: {:.0f} %, {:.0f} s", what_.value_or(""), 100 * std::clamp(part_, 0.0, 1.0), elapsed);
+  if (const std::optional<double> left = seconds_left(elapsed)) text += fmt::format(", about {:.0f} s left", *left);
   return text;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -28,12 +29,13 @@ class WorkPace {
   /// Records that the share `part`, 0 to 1, of stage `what` is done at `elapsed` [s] after the start. Another name begins a new
   /// stage.
   void note(std::string_view what, double part, double elapsed);
-  /// Returns the progress as text: "closing: 43 %, 12 s, about 16 s left". The remaining time is that of the current stage; it
-  /// is omitted until it can be estimated.
+  /// Returns the remaining time of the current stage [s]; none at its end, and until it can be estimated.
+  [[nodiscard]] std::optional<double> seconds_left(double elapsed) const;
+  /// Returns the progress as text: "closing: 43 %, 12 s, about 16 s left", with seconds_left() if there is one.
   [[nodiscard]] std::string words(double elapsed) const;
 
  private:
-  std::string what_;
+  std::optional<std::string> what_;  // name of the current stage, which may be empty; none before the first note
   double began_ = 0, first_part_ = 0, part_ = 0;
 };
 

@@ -72,7 +72,10 @@ SearchProgress::SearchProgress(bool quiet, const OptimizeOptions& options, std::
 void SearchProgress::show(const OptimizeProgress& progress) {
   progress_ = progress;
   if (progress.planned > 0) budget_ = progress.planned;
-  bar_.show([this](double elapsed) { return state(elapsed); });
+  bar_.show([this](double elapsed) {
+    pace_.note(of_, static_cast<double>(progress_.evaluations) / static_cast<double>(budget_), elapsed);
+    return state(elapsed);
+  });
 }
 
 void SearchProgress::close() {
@@ -84,11 +87,8 @@ std::pair<double, std::string> SearchProgress::state(double elapsed) const {
   std::string state = of_;
   state += timed ? fmt::format("{:.0f} of {:g} s, {} {}", elapsed, seconds_, progress_.evaluations, counted_)
                  : fmt::format("{} of {} {}, {:.0f} s", progress_.evaluations, budget_, counted_, elapsed);
-  constexpr long telling = 100;  // the remaining time is shown once 1 / telling of the budget of evaluations is used
-  if (!timed && progress_.evaluations > budget_ / telling && progress_.evaluations < budget_) {
-    const auto done = static_cast<double>(progress_.evaluations);
-    state += fmt::format(", about {:.0f} s left", elapsed * (static_cast<double>(budget_) - done) / done);
-  }
+  if (const std::optional<double> left = pace_.seconds_left(elapsed); left && !timed)
+    state += fmt::format(", about {:.0f} s left", *left);
   state += std::isfinite(progress_.best_cost)
                ? fmt::format(", cost {:.4f} (plain step {:.4f})", progress_.best_cost, progress_.baseline_cost)
                : ", no feasible waveform yet";

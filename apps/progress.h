@@ -71,6 +71,7 @@ class SearchProgress {
   long budget_;
   double seconds_;
   std::string counted_, of_;
+  WorkPace pace_;  // pace since the first evaluation: the time before it, for preparations, says nothing of the rest
   OptimizeProgress progress_;
 };
 

@@ -43,11 +43,19 @@ TEST(WorkPace, EstimatesTheRemainingTimeFromTheCurrentTask) {
   pace.note("closing", 0.25, 8);
   EXPECT_EQ(pace.words(8), "closing: 25 %, 8 s, about 6 s left");
   pace.note("closing", 1, 14);
-  EXPECT_EQ(pace.words(14), "closing: 100 %, 14 s, about 0 s left");
+  EXPECT_EQ(pace.words(14), "closing: 100 %, 14 s");
   pace.note("closing", 0.1, 15);  // the same note again
   EXPECT_EQ(pace.words(15), "closing: 10 %, 15 s");
   pace.note("closing", 0.4, 18);
   EXPECT_EQ(pace.words(18), "closing: 40 %, 18 s, about 6 s left");
+}
+
+TEST(WorkPace, LeavesOutTheTimeBeforeTheFirstEvaluation) {
+  WorkPace pace;
+  pace.note("", 1.0 / 20'000, 36);  // the only search of a run has no name
+  EXPECT_FALSE(pace.seconds_left(36));
+  pace.note("", 4001.0 / 20'000, 46);
+  EXPECT_NEAR(pace.seconds_left(46).value(), 40, 0.01);
 }
 
 }  // namespace
