@@ -9,7 +9,6 @@
 
 #include "base/require.h"
 #include "reports/accuracy_prose.h"
-#include "reports/member_lister.h"
 #include "reports/study_members.h"
 
 namespace softland {
@@ -19,10 +18,9 @@ using nlohmann::json;
 namespace internal {
 namespace {
 
-template <class A>
-void error_members(A& a, FigureErrors& errors) {
+void error_members(Archive& a, FigureErrors& errors) {
   constexpr std::string_view about = "relative error of the figure";
-  if constexpr (A::lists) return a("FIGURE", errors[0], about);
+  if (a.lists()) return a("FIGURE", errors[0], about);
   for (std::size_t i = 0; i < errors.size(); ++i) a(studied_figures[i].key, errors[i], about);
 }
 
@@ -30,8 +28,7 @@ void error_members(A& a, FigureErrors& errors) {
 }  // namespace internal
 
 // The errors of a run are its `errors` in JSON.
-template <class A>
-void run_members(A& a, AccuracyRow& row, std::string_view errors, std::string_view errors_about) {
+void run_members(internal::Archive& a, AccuracyRow& row, std::string_view errors, std::string_view errors_about) {
   a.custom("integrator", row.integrator, internal::integrator_name, internal::read_integrator,
            internal::Like<std::string>{"integrator"});
   a("tolerance", row.tolerance, "relative tolerance");
@@ -48,8 +45,7 @@ void run_members(A& a, AccuracyRow& row, std::string_view errors, std::string_vi
   a("runs", row.runs, "number of timed runs");
 }
 
-template <class A>
-void members(A& a, AccuracyRow& row) {
+void members(internal::Archive& a, AccuracyRow& row) {
   run_members(a, row, "relative_errors", "relative error of each figure against the reference");
 }
 
@@ -59,7 +55,7 @@ namespace {
 json reference_json(const AccuracyStudy& study) {
   json reference = internal::record_json(study.reference);
   reference["resolution"] = reference["relative_errors"];
-  internal::JsonWriter resolution;
+  internal::Archive resolution = internal::Archive::writer();
   internal::error_members(resolution, const_cast<FigureErrors&>(study.resolution));
   reference["resolution"] = std::move(resolution).take();
   reference.erase("relative_errors");
@@ -82,9 +78,8 @@ std::vector<Recommendation> read_recommendations(const json& from, const std::ve
   std::vector<Recommendation> all;
   for (const json& one : from.is_array() ? from : json::array()) {
     Recommendation& r = all.emplace_back();
-    const internal::JsonReader members(one);
-    r.accuracy = internal::JsonReader::read<double>(members.at("accuracy"));
-    const auto row = std::ranges::find(rows, members.at("setting"), internal::record_json<AccuracyRow>);
+    r.accuracy = internal::read_json<double>(internal::value_at(one, "accuracy"));
+    const auto row = std::ranges::find(rows, internal::value_at(one, "setting"), internal::record_json<AccuracyRow>);
     if (row != rows.end()) r.row = static_cast<std::size_t>(row - rows.begin());
   }
   return all;
@@ -107,15 +102,13 @@ namespace internal {
 
 // The JSON of the reference run, whose errors have another name.
 struct ReferenceJson {};
-template <class A>
-void members(A& a, ReferenceJson&) {
+void members(Archive& a, ReferenceJson&) {
   AccuracyRow row;
   run_members(a, row, "resolution", "relative difference of each figure from a second reference run");
 }
 
 struct RecommendationJson {};
-template <class A>
-void members(A& a, RecommendationJson&) {
+void members(Archive& a, RecommendationJson&) {
   a("accuracy", 0.0, "relative error that is asked for");
   a("words", std::string(), "the recommendation in words");
   a("setting", AccuracyRow{}, "fastest setting within it; null: none");
@@ -123,8 +116,7 @@ void members(A& a, RecommendationJson&) {
 
 }  // namespace internal
 
-template <class A>
-void members(A& a, AccuracyRecord& record) {
+void members(internal::Archive& a, AccuracyRecord& record) {
   AccuracyStudy& study = record.found;
   members(a, record.origin);
   a("status", study.status, "outcome of the reference run");
@@ -132,10 +124,10 @@ void members(A& a, AccuracyRecord& record) {
   if (a.has(!study.rows.empty())) a("rows", study.rows, "runs of the integrator of `simulate` and of others");
   if (study.rows.empty()) return;
   a.custom(
-      "reference", study.reference, [&](const AccuracyRow&) { return reference_json(study); },
-      internal::JsonReader::read<AccuracyRow>, internal::Like<internal::ReferenceJson>{"the reference run"});
-  if constexpr (A::reads) {
-    internal::JsonReader reference(a.at("reference"));
+      "reference", study.reference, [&](const AccuracyRow&) { return reference_json(study); }, internal::read_json<AccuracyRow>,
+      internal::Like<internal::ReferenceJson>{"the reference run"});
+  if (a.reads()) {
+    internal::Archive reference = internal::Archive::reader(internal::value_at(a.from(), "reference"));
     reference.object(
         "resolution", [&](auto& resolution) { internal::error_members(resolution, study.resolution); },
         "relative difference between two reference runs");
@@ -147,9 +139,9 @@ void members(A& a, AccuracyRecord& record) {
   a.object(
       "cloud",
       [&](auto& cloud) {
-        for (std::size_t i = 0; i < (A::lists ? 1 : studied_figures.size()); ++i) {
+        for (std::size_t i = 0; i < (a.lists() ? 1 : studied_figures.size()); ++i) {
           cloud.object(
-              A::lists ? "FIGURE" : studied_figures[i].key,
+              a.lists() ? "FIGURE" : studied_figures[i].key,
               [&](auto& one) {
                 members(one, study.cloud[i]);
                 one("well_conditioned", study.conditioned[i], "whether the error of the figure means something");
@@ -164,13 +156,6 @@ void members(A& a, AccuracyRecord& record) {
       "recommendations", study.recommendations, [&](const auto&) { return recommendations_json(study); },
       [&](const json& from) { return read_recommendations(from, study.rows); },
       internal::Like<std::vector<internal::RecommendationJson>>{"fastest setting for each accuracy"});
-}
-
-template <>
-std::vector<JsonMember> json_members<AccuracyRecord>() {
-  AccuracyRecord record;
-  record.found.rows.emplace_back();
-  return internal::listed(record);
 }
 
 json json_of(const AccuracyRecord& record) { return internal::record_json(record); }

@@ -15,6 +15,8 @@ struct AccuracyRecord {
   AccuracyStudy found;
 };
 
+/// Names the members of the JSON.
+void members(internal::Archive& a, AccuracyRecord& record);
 [[nodiscard]] nlohmann::json json_of(const AccuracyRecord& record);
 [[nodiscard]] AccuracyRecord read_accuracy(const nlohmann::json& from);
 /// Returns a document with recommended settings, work-precision diagrams, tables of errors, and the spread of ill-conditioned

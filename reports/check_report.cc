@@ -5,7 +5,6 @@
 #include "base/printable.h"
 #include "base/shortened.h"
 #include "document/text.h"
-#include "reports/member_lister.h"
 #include "reports/pull_in_members.h"
 #include "studies/closing/summits_at_hold.h"
 
@@ -24,20 +23,18 @@ json by_electrode(const std::map<std::string, PullInRecord>& all) {
 
 std::map<std::string, PullInRecord> read_by_electrode(const json& from) {
   if (!from.is_object()) return {};
-  if (from.contains("static_V")) return {{"", internal::JsonReader::read<PullInRecord>(from)}};
-  return internal::JsonReader::read<std::map<std::string, PullInRecord>>(from);
+  if (from.contains("static_V")) return {{"", internal::read_json<PullInRecord>(from)}};
+  return internal::read_json<std::map<std::string, PullInRecord>>(from);
 }
 
 }  // namespace
 
-template <class A>
-void members(A& a, CheckRecord::Line& line) {
+void members(internal::Archive& a, CheckRecord::Line& line) {
   a("name", line.name, "name of the number");
   a("value", line.value, "its value as text");
 }
 
-template <class A>
-void members(A& a, CheckRecord::Rest& rest) {
+void members(internal::Archive& a, CheckRecord::Rest& rest) {
   a("far_end_rise_m", rest.far_end_rise, "rise of the far end above the straight shape");
   a("far_end_gap_m", rest.far_end_gap, "distance of the far end to the electrode");
   a("contact_rise_m", rest.contact_rise, "rise at the first contact above the straight shape");
@@ -45,8 +42,7 @@ void members(A& a, CheckRecord::Rest& rest) {
   a("least_electrode_gap_m", rest.least_gap, "smallest gap to the electrodes");
 }
 
-template <class A>
-void members(A& a, CheckRecord& record) {
+void members(internal::Archive& a, CheckRecord& record) {
   members(a, record.origin);
   a.derived("status", std::string(to_string(Status::done)), "`done`");
   a("file", record.file, "scene file, as it was given");
@@ -63,11 +59,6 @@ void members(A& a, CheckRecord& record) {
   a("tolerance", record.tolerance, "relative tolerance of the integrator");
   a("warnings", record.warnings, "warnings");
   a("lines", record.lines, "derived numbers, as `check` prints them");
-}
-
-template <>
-std::vector<JsonMember> json_members<CheckRecord>() {
-  return internal::listed<CheckRecord>();
 }
 
 json json_of(const CheckRecord& record) { return internal::record_json(record); }

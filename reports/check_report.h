@@ -44,6 +44,8 @@ struct CheckRecord {
   std::vector<Line> lines;  ///< numbers derived from the scene, with their names, as text
 };
 
+/// Names the members of the JSON.
+void members(internal::Archive& a, CheckRecord& record);
 [[nodiscard]] nlohmann::json json_of(const CheckRecord& record);
 [[nodiscard]] CheckRecord read_check(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const CheckRecord& record);

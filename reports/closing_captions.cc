@@ -222,9 +222,9 @@ std::string contact_caption(const ClosingRecord& result) {
   };
   if (holds_several(result.best) || holds_several(result.baseline()))
     words += " A pale bar stands for several touches; the openings between them are too short to be drawn.";
-  const JsonReader metrics(JsonReader(result.origin.scene).at("metrics"));
+  const nlohmann::json& metrics = value_at(result.origin.scene, "metrics");
   for (const char* rule : {"closed_force", "closed_resistance", "closed_after"}) {
-    if (metrics.at(rule).is_null()) continue;
+    if (value_at(metrics, rule).is_null()) continue;
     words += fmt::format(" They do not show when the connection is electrically closed, which metrics.{} decides.", rule);
     break;
   }

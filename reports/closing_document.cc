@@ -157,8 +157,8 @@ ReportTable contacts_table(const ClosingRecord& result) {
 std::string uncounted_layer_caption(const ClosingRecord& result) {
   const bool told = std::isfinite(figure_of_run(result.best, &Metrics::drive_energy)) ||
                     std::isfinite(figure_of_run(result.baseline(), &Metrics::drive_energy));
-  const JsonReader piezo(JsonReader(result.origin.scene).at("piezo"));
-  if (!told || piezo.at("thickness").is_null() || !piezo.at("relative_permittivity").is_null()) return {};
+  const json& piezo = value_at(result.origin.scene, "piezo");
+  if (!told || value_at(piezo, "thickness").is_null() || !value_at(piezo, "relative_permittivity").is_null()) return {};
   return "The drive energy does not count the charging of the piezo layer: the scene has no piezo.relative_permittivity.";
 }
 

@@ -9,7 +9,6 @@
 #include "base/require.h"
 #include "reports/closing_captions.h"
 #include "reports/closing_members.h"
-#include "reports/member_lister.h"
 #include "reports/record_file.h"
 #include "reports/study_members.h"
 
@@ -18,8 +17,8 @@ namespace softland {
 using nlohmann::json;
 
 bool internal::is_of_search(const json& result) {
-  const std::string kind = JsonReader::read<std::string>(JsonReader(result).at("kind"));
-  return kind == "optimize" || (kind.empty() && !JsonReader(result).at("baseline").is_null());
+  const std::string kind = read_json<std::string>(value_at(result, "kind"));
+  return kind == "optimize" || (kind.empty() && !value_at(result, "baseline").is_null());
 }
 
 json internal::rebounds_json(const std::vector<Rebound>& rebounds) {
@@ -32,10 +31,10 @@ std::vector<Rebound> internal::read_rebounds(const json& rows) {
   std::vector<Rebound> all;
   for (const json& row : rows.is_array() ? rows : json::array()) {
     if (row.is_array() && row.size() >= 4)
-      all.push_back({.begin = JsonReader::read<double>(row[0]),
-                     .end = JsonReader::read<double>(row[1]),
-                     .height = JsonReader::read<double>(row[2]),
-                     .time_of_height = JsonReader::read<double>(row[3])});
+      all.push_back({.begin = read_json<double>(row[0]),
+                     .end = read_json<double>(row[1]),
+                     .height = read_json<double>(row[2]),
+                     .time_of_height = read_json<double>(row[3])});
   }
   return all;
 }
@@ -52,9 +51,8 @@ std::optional<std::vector<ClosedStretch>> internal::read_closed(const json& rows
   std::vector<ClosedStretch> all;
   for (const json& row : rows) {
     if (row.is_array() && row.size() == 3)
-      all.push_back({.begin = JsonReader::read<double>(row[0]),
-                     .end = JsonReader::read<double>(row[1]),
-                     .touches = JsonReader::read<std::uint64_t>(row[2])});
+      all.push_back(
+          {.begin = read_json<double>(row[0]), .end = read_json<double>(row[1]), .touches = read_json<std::uint64_t>(row[2])});
   }
   return all;
 }
@@ -67,7 +65,7 @@ json internal::closed_contacts_json(const std::map<std::string, std::vector<Clos
 
 std::map<std::string, std::vector<ClosedStretch>> internal::read_closed_contacts(const json& closed) {
   std::map<std::string, std::vector<ClosedStretch>> all;
-  for (const auto& [name, rows] : JsonReader::read<std::map<std::string, json>>(closed)) {
+  for (const auto& [name, rows] : read_json<std::map<std::string, json>>(closed)) {
     if (auto stretches = read_closed(rows)) all[name] = std::move(*stretches);
   }
   return all;
@@ -80,7 +78,7 @@ json internal::counted_json(const Points& points) {
   return all;
 }
 
-Points internal::read_points(const json& points) { return JsonReader::read<Points>(points); }
+Points internal::read_points(const json& points) { return read_json<Points>(points); }
 
 // Writes pull-in voltages. A single electrode has no name in JSON; several electrodes are distinguished by name.
 json internal::pull_in_json(const std::map<std::string, PullInOfElectrode>& pull_in) {
@@ -94,8 +92,8 @@ json internal::pull_in_json(const std::map<std::string, PullInOfElectrode>& pull
 // Reads pull-in voltages. A single electrode has no name in JSON.
 std::map<std::string, PullInOfElectrode> internal::read_pull_in(const json& volts) {
   if (!volts.is_object()) return {};
-  if (volts.contains("static_V") || volts.contains("dynamic_V")) return {{"", JsonReader::read<PullInOfElectrode>(volts)}};
-  return JsonReader::read<std::map<std::string, PullInOfElectrode>>(volts);
+  if (volts.contains("static_V") || volts.contains("dynamic_V")) return {{"", read_json<PullInOfElectrode>(volts)}};
+  return read_json<std::map<std::string, PullInOfElectrode>>(volts);
 }
 
 // Writes the spread of each ill-conditioned figure of merit over repeated runs with slightly changed settings.
@@ -108,15 +106,15 @@ json internal::certified_json(const std::vector<IllConditioned>& figures) {
 std::vector<IllConditioned> internal::read_certified(const json& certified) {
   std::vector<IllConditioned> all;
   for (const Figure& figure : all_figures) {
-    const json& cloud = JsonReader(certified).at(figure.key);
-    if (cloud.is_object()) all.push_back({figure, JsonReader::read<Spread>(cloud)});
+    const json& cloud = value_at(certified, figure.key);
+    if (cloud.is_object()) all.push_back({figure, read_json<Spread>(cloud)});
   }
   return all;
 }
 
 Integrator internal::read_integrator(const json& name) {
   const auto found =
-      std::ranges::find(all_integrators, JsonReader::read<std::string>(name), [](Integrator one) { return to_string(one); });
+      std::ranges::find(all_integrators, read_json<std::string>(name), [](Integrator one) { return to_string(one); });
   return found == all_integrators.end() ? Integrator::automatic : *found;
 }
 
@@ -131,11 +129,11 @@ std::optional<ByModes> internal::read_by_modes(const json& found) {
   ByModes all;
   for (const auto& [modes, value] : found.items()) {
     if (modes == "converged") {
-      all.converged = JsonReader::read<double>(value);
+      all.converged = read_json<double>(value);
     } else {
       int count = 0;
       const auto [end, error] = std::from_chars(modes.data(), modes.data() + modes.size(), count);
-      if (error == std::errc() && end == modes.data() + modes.size()) all.values[count] = JsonReader::read<double>(value);
+      if (error == std::errc() && end == modes.data() + modes.size()) all.values[count] = read_json<double>(value);
     }
   }
   return all.values.empty() ? std::nullopt : std::optional(std::move(all));
@@ -152,9 +150,7 @@ json internal::static_by_modes_json(const std::optional<ByModes>& found) {
   return found ? json{{"static_V", by_modes_json(*found)}} : json();
 }
 
-std::optional<ByModes> internal::read_static_by_modes(const json& found) {
-  return read_by_modes(JsonReader(found).at("static_V"));
-}
+std::optional<ByModes> internal::read_static_by_modes(const json& found) { return read_by_modes(value_at(found, "static_V")); }
 
 json internal::voltages_json(const std::map<std::string, ByModes>& of_electrodes) {
   if (of_electrodes.empty()) return nullptr;
@@ -178,8 +174,8 @@ HoldWindows internal::read_windows(const json& ends) {
   for (const auto& [electrode, window] : ends.items()) {
     HoldWindow& one = all.of_electrodes[electrode];
     if (window.is_array() && window.size() == 2)
-      one = {.lower = JsonReader::read<double>(window[0]),
-             .upper = window[1].is_null() ? std::numeric_limits<double>::infinity() : JsonReader::read<double>(window[1])};
+      one = {.lower = read_json<double>(window[0]),
+             .upper = window[1].is_null() ? std::numeric_limits<double>::infinity() : read_json<double>(window[1])};
   }
   return all;
 }
@@ -211,41 +207,6 @@ void add_verdict(json& j, const ClosingRecord& r) {
 
 }  // namespace
 
-template <>
-std::vector<JsonMember> json_members<Origin>() {
-  return internal::listed<Origin>();
-}
-
-template <>
-std::vector<JsonMember> json_members<ClosingRecord>() {
-  ClosingRecord record;
-  record.best.figures.emplace();
-  record.certificate.emplace();
-  std::vector<JsonMember> all = internal::listed(record);
-  internal::add_members(all,
-                        {{.key = "collapse_time_s", .type = "number", .about = "time at which the beam touched the electrode"},
-                         {.key = "static_deflection_m", .type = "number", .about = "that of `metrics`"},
-                         {.key = "capacitance_F", .type = "number", .about = "that of `metrics`"}});
-  return all;
-}
-
-template <>
-std::vector<JsonMember> json_members<SearchRecord>() {
-  ClosingRecord record;
-  record.best.figures.emplace();
-  record.certificate.emplace();
-  record.search.emplace().devices.emplace();
-  std::vector<JsonMember> all = internal::listed(record);
-  internal::add_members(all, {{.key = "confirmed", .type = "true or false", .about = "whether the repeated simulations agree"},
-                              {.key = "worst",
-                               .type = "record",
-                               .about = "repeated simulation that disagrees most",
-                               .members = {{.key = "name", .type = "text", .about = "what differs in it"},
-                                           {.key = "figure", .type = "text", .about = "key of the figure that disagrees"},
-                                           {.key = "value", .type = "number", .about = "value of this figure"}}}});
-  return all;
-}
-
 json json_of(const ClosingRecord& r) {
   json j = internal::record_json(r);
   if (r.search) {
@@ -274,13 +235,13 @@ json parse_closing(std::string_view content, const std::string& name) {
 
 void require_reportable(const json& result) {
   for (const char* part : {internal::is_of_search(result) ? "baseline" : "metrics", "scene"}) {
-    require(internal::JsonReader(result).at(part).is_object(), fmt::format("\"{}\" is missing", part));
+    require(internal::value_at(result, part).is_object(), fmt::format("\"{}\" is missing", part));
   }
 }
 
 ClosingRecord read_closing(const json& result) {
   require(result.is_object(), "the result is not a JSON object");
-  ClosingRecord r = internal::JsonReader::read<ClosingRecord>(result);
+  ClosingRecord r = internal::read_json<ClosingRecord>(result);
   r.origin.kind = r.search ? "optimize" : "simulate";
   if (r.origin.scene_toml.empty() && r.origin.scene.is_object())
     r.origin.scene_toml = r.origin.scene.dump(2, ' ', false, json::error_handler_t::replace);

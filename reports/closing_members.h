@@ -36,8 +36,7 @@ inline constexpr FigureGroup figure_of_number{[](const Figure& figure) { return 
 
 // Lists status and figures of a run: in JSON, the status is a member of the object that holds the figures.
 inline constexpr const char *figures_about = "figures of the run", *status_about = "outcome of the run";
-template <class A>
-void figures_and_status(A& a, FigureValues& figures, std::string& status, const FigureGroup& group) {
+inline void figures_and_status(Archive& a, FigureValues& figures, std::string& status, const FigureGroup& group) {
   a.object(
       "metrics",
       [&](auto& metrics) {
@@ -46,19 +45,17 @@ void figures_and_status(A& a, FigureValues& figures, std::string& status, const 
       },
       figures_about);
 }
-template <class A>
-void figures_and_status(A& a, std::optional<FigureValues>& figures, std::string& status, const FigureGroup& group) {
+inline void figures_and_status(Archive& a, std::optional<FigureValues>& figures, std::string& status, const FigureGroup& group) {
   a.object(
       "metrics",
       [&](auto& metrics) {
-        if (metrics.reads || !figures) figures.emplace();
+        if (metrics.reads() || !figures) figures.emplace();
         metrics.figures(*figures, group);
         metrics("status", status, status_about);
       },
       figures_about);
 }
-template <class A>
-void figure_errors(A& a, FigureValues& errors) {
+inline void figure_errors(Archive& a, FigureValues& errors) {
   a.object(
       "errors", [&](auto& inside) { inside.figures(errors, figure_of_number); }, "errors of the figures");
 }
@@ -93,8 +90,7 @@ struct FiveNumbers {
   double least = Metrics::unset, lower_quartile = Metrics::unset, median = Metrics::unset, upper_quartile = Metrics::unset,
          most = Metrics::unset;
 };
-template <class A>
-void members(A& a, FiveNumbers& numbers) {
+inline void members(Archive& a, FiveNumbers& numbers) {
   a("least", numbers.least, "least value");
   a("lower_quartile", numbers.lower_quartile, "lower quartile");
   a("median", numbers.median, "median");
@@ -105,8 +101,7 @@ struct FailedSeed {
   std::uint64_t seed = 0;
   std::string reason;
 };
-template <class A>
-void members(A& a, FailedSeed& failed) {
+inline void members(Archive& a, FailedSeed& failed) {
   a("seed", failed.seed, "seed of the search");
   a("reason", failed.reason, "why it failed");
 }
@@ -121,8 +116,7 @@ struct SeedsSummary {
 
 }  // namespace internal
 
-template <class A>
-void members(A& a, MadeWith& made) {
+inline void members(internal::Archive& a, MadeWith& made) {
   using internal::OrNull;
   a("program", OrNull{made.program}, "hash of the program");
   a("compiler", OrNull{made.compiler}, "compiler that built the program");
@@ -135,8 +129,7 @@ void members(A& a, MadeWith& made) {
 
 /// Writes or reads the origin of results: verb, program, machine, command line and scene. The JSON of every verb begins with
 /// it.
-template <class A>
-void members(A& a, Origin& origin) {
+inline void members(internal::Archive& a, Origin& origin) {
   a("kind", origin.kind, "verb that made the record");
   a("version", origin.version, "version of softland");
   a("made_with", origin.made_with, "what the last digits of the numbers depend on");
@@ -146,23 +139,20 @@ void members(A& a, Origin& origin) {
   if (a.has(!origin.scene_toml.empty())) a("scene_toml", origin.scene_toml, "the same scene as the text of a scene file");
 }
 
-template <class A>
-void members(A& a, ShownMotion::Contact& contact) {
+inline void members(internal::Archive& a, ShownMotion::Contact& contact) {
   a("name", contact.name, "name of the contact; may be empty if there is one");
   a("at_m", contact.at, "position along the structure");
   a("gap_m", contact.gap, "rest distance to its contact plane");
   a("far_side", contact.far_side, "whether the contact is on the far side");
 }
-template <class A>
-void members(A& a, ShownMotion::Pad& pad) {
+inline void members(internal::Archive& a, ShownMotion::Pad& pad) {
   a("electrode", pad.electrode, "name of the electrode");
   a("begin_m", pad.begin, "begin along the structure");
   a("end_m", pad.end, "end along the structure");
   a("gap_m", pad.gap, "rest distance of its face to a straight structure");
   a("far_side", pad.far_side, "whether the electrode is on the far side");
 }
-template <class A>
-void members(A& a, ShownMotion& motion) {
+inline void members(internal::Archive& a, ShownMotion& motion) {
   a("time_s", motion.time, "instants");
   a("amplitudes_m", motion.amplitudes, "largest deflection of each mode at each instant");
   a("x_m", motion.places, "positions along the structure");
@@ -172,8 +162,7 @@ void members(A& a, ShownMotion& motion) {
   a("electrodes", motion.electrodes, "electrodes of the structure");
 }
 
-template <class A>
-void members(A& a, CurveRecord& curve) {
+inline void members(internal::Archive& a, CurveRecord& curve) {
   a("time_s", curve.time, "time since the start of the run");
   a("tip_gap_m", curve.gap, "distance of the contact point to the contact plane");
   a("tip_velocity_m_s", curve.velocity, "velocity of the contact point towards the contact");
@@ -194,46 +183,39 @@ void members(A& a, CurveRecord& curve) {
   a("motion", curve.motion, "motion of the whole structure; none if the run stopped early");
 }
 
-template <class A>
-void members(A& a, RunRecord& run) {
+inline void members(internal::Archive& a, RunRecord& run) {
   internal::figures_and_status(a, run.figures, run.status, internal::every_figure);
   a("collapse_time_s", run.collapse_time, "time at which the beam touched the electrode");
   a("waveforms", run.waveforms, "waveform of each drive: time [s], level [V]; of a dispersion force its factor");
 }
 
-template <class A>
-void members(A& a, ContactFigures& contact) {
+inline void members(internal::Archive& a, ContactFigures& contact) {
   a("gap_m", contact.gap, "rest distance to its contact plane");
   a.figures(contact.figures, internal::figure_of_contact);
 }
 
-template <class A>
-void members(A& a, ConfirmationRecord& check) {
+inline void members(internal::Archive& a, ConfirmationRecord& check) {
   a("name", check.name, "what differs in the repeated simulation");
   internal::figures_and_status(a, check.figures, check.status, internal::figure_of_no_drive);
 }
 
-template <class A>
-void members(A& a, EffectsLeftOut::LeftOut& one) {
+inline void members(internal::Archive& a, EffectsLeftOut::LeftOut& one) {
   a("effect", one.effect, "name of the effect");
   a("influence", one.influence, "estimated relative influence on the figures");
 }
-template <class A>
-void members(A& a, EffectsLeftOut& effects) {
+inline void members(internal::Archive& a, EffectsLeftOut& effects) {
   a("left_out", effects.left_out, "effects that were left out");
   a("influence", effects.influence, "estimated relative influence of all of them together");
 }
 
-template <class A>
-void members(A& a, Spread& spread) {
+inline void members(internal::Archive& a, Spread& spread) {
   a("median", spread.median, "median over the perturbed runs");
   a("low", spread.low, "smallest value");
   a("high", spread.high, "largest value");
   a("runs", spread.runs, "number of runs");
 }
 
-template <class A>
-void members(A& a, GrazingRebound& rebound) {
+inline void members(internal::Archive& a, GrazingRebound& rebound) {
   a("rebound", rebound.number, "number of the rebound, from 1");
   a("time_s", rebound.time, "begin of the rebound");
   a("height_m", rebound.height, "its height");
@@ -242,8 +224,7 @@ void members(A& a, GrazingRebound& rebound) {
     "true: significant in some runs only; false: the touch before it is the slowest so far");
 }
 
-template <class A>
-void members(A& a, ClosedState& state) {
+inline void members(internal::Archive& a, ClosedState& state) {
   a("exists", state.exists, "whether there is an equilibrium with a contact force");
   a("stable", internal::OrNull{state.stable}, "whether it is stable");
   a("smallest_eigenvalue_rad2_s2", state.smallest_eigenvalue, "smallest eigenvalue of the stiffness relative to the mass");
@@ -255,8 +236,7 @@ void members(A& a, ClosedState& state) {
                "by electrode, collapse voltage by number of modes; `converged`: extrapolated"});
 }
 
-template <class A>
-void members(A& a, PullInOfElectrode& volts) {
+inline void members(internal::Archive& a, PullInOfElectrode& volts) {
   a("static_V", volts.static_pull_in, "static pull-in voltage");
   a("dynamic_V", volts.dynamic_pull_in, "dynamic pull-in voltage");
   a.custom("by_modes", volts.static_by_modes, internal::static_by_modes_json, internal::read_static_by_modes,
@@ -264,8 +244,7 @@ void members(A& a, PullInOfElectrode& volts) {
                "`static_V` by number of modes; `converged`: extrapolated"});
 }
 
-template <class A>
-void members(A& a, Work& work) {
+inline void members(internal::Archive& a, Work& work) {
   a.custom("integrator", work.integrator, internal::integrator_name, internal::read_integrator,
            internal::Like<std::string>{"integrator of the run"});
   a("steps", work.steps, "number of steps");
@@ -273,21 +252,18 @@ void members(A& a, Work& work) {
   a("wall_s", work.wall, "elapsed time");
 }
 
-template <class A>
-void members(A& a, TouchLimit& limit) {
+inline void members(internal::Archive& a, TouchLimit& limit) {
   a("least_time_s", limit.least_time, "least closing time of any waveform with at most this impact velocity");
   a(key_of(&Metrics::impact_velocity), limit.impact_velocity, "impact velocity of the best waveform");
 }
 
-template <class A>
-void members(A& a, SearchedFamilyResult& one) {
+inline void members(internal::Archive& a, SearchedFamilyResult& one) {
   a("family", one.family, "waveform family");
   a("evaluations", one.evaluations, "number of its evaluations");
   a("cost", one.cost, "its lowest cost");
 }
 
-template <class A>
-void members(A& a, SearchOfSeed& search) {
+inline void members(internal::Archive& a, SearchOfSeed& search) {
   a("seed", search.seed, "seed of the search");
   a("status", search.status, "outcome of the search");
   a("cost", search.cost, "its lowest cost");
@@ -301,8 +277,7 @@ void members(A& a, SearchOfSeed& search) {
       "figures under the found waveform");
 }
 
-template <class A>
-void members(A& a, SeedsFindings& seeds) {
+inline void members(internal::Archive& a, SeedsFindings& seeds) {
   a("planned", seeds.planned, "planned number of searches");
   a("searches", seeds.searches, "completed searches, by seed");
   const auto seed_of = [&](std::size_t k) {
@@ -317,7 +292,7 @@ void members(A& a, SeedsFindings& seeds) {
         return best;
       },
       internal::Like<std::uint64_t>{"seed of the best search"});
-  if constexpr (!A::reads) {
+  if (!a.reads()) {
     const internal::SeedsSummary summary = internal::seeds_summary(seeds);
     a("goal_met", summary.goal_met, "number of searches that met the goal");
     a("confirmed", summary.confirmed, "number of searches that were confirmed");
@@ -328,8 +303,7 @@ void members(A& a, SeedsFindings& seeds) {
 }
 
 /// The members of a search are at the same level of the JSON as the members of the closing that the search found.
-template <class A>
-void members_of_search(A& a, SearchRecord& search, ClosingRecord& closing) {
+inline void members_of_search(internal::Archive& a, SearchRecord& search, ClosingRecord& closing) {
   a("target", search.target, "target of the search");
   a("actuator", search.actuator, "drives that were searched");
   a("waveform", search.waveform, "waveform family of the best waveform");
@@ -396,8 +370,7 @@ void members_of_search(A& a, SearchRecord& search, ClosingRecord& closing) {
 }
 
 /// Members that are computed from other members are written in closing_json.cc.
-template <class A>
-void members(A& a, ClosingRecord& record) {
+inline void members(internal::Archive& a, ClosingRecord& record) {
   members(a, record.origin);
   a("status", record.status, "outcome of the run, or `interrupted`");
   a.custom("pull_in", record.pull_in, internal::pull_in_json, internal::read_pull_in,
@@ -419,7 +392,7 @@ void members(A& a, ClosingRecord& record) {
     a.object(
         "metrics",
         [&](auto& metrics) {
-          if (metrics.reads || !record.best.figures) record.best.figures.emplace();
+          if (metrics.reads() || !record.best.figures) record.best.figures.emplace();
           metrics.figures(*record.best.figures, internal::every_figure);
         },
         "figures of the run under the best waveform, or of the single run");
@@ -430,8 +403,8 @@ void members(A& a, ClosingRecord& record) {
   if (a.has(!record.contacts.empty())) a("contacts", record.contacts, "figures of each of several contacts");
   a("closed_state", record.closed_state, "closed equilibrium under the hold levels");
   a("work", record.work, "cost of the simulation");
-  if constexpr (A::reads) {
-    if (internal::is_of_search(a.whole())) record.search.emplace();
+  if (a.reads()) {
+    if (internal::is_of_search(a.from())) record.search.emplace();
     a.object(
         "certified", [&](auto&) { record.certificate.emplace(); },
         "ill-conditioned figures over perturbed runs, with `--certify`");

@@ -16,7 +16,6 @@
 #include "document/quantity.h"
 #include "document/svg.h"
 #include "reports/closing_charts.h"
-#include "reports/member_lister.h"
 #include "reports/side_view.h"
 #include "reports/study_members.h"
 #include "sampling/statistics.h"
@@ -190,8 +189,7 @@ ReportTable cycles_table(const CycleRecord::Drive& drive, const std::string& nam
 
 }  // namespace
 
-template <class A>
-void members(A& a, CycleRecord::Devices& d) {
+void members(internal::Archive& a, CycleRecord::Devices& d) {
   a("count", d.count, "number of devices");
   a("largest_rate_5_Hz", d.at_5, "5th percentile of the largest rate with steady cycles");
   a("largest_rate_50_Hz", d.at_50, "median of that rate");
@@ -199,16 +197,14 @@ void members(A& a, CycleRecord::Devices& d) {
   a("steady_at_rate", d.steady, "share of devices with steady cycles at `rate_Hz`");
 }
 
-template <class A>
-void members(A& a, CycleRecord::Cycle& cycle) {
+void members(internal::Archive& a, CycleRecord::Cycle& cycle) {
   members(a, cycle.metrics);
   a(key_of(&Metrics::largest_impact_velocity), cycle.metrics.largest_impact_velocity,
     "largest impact velocity of all touches of the cycle");
   a("on_time_s", cycle.on_time, "time in which the switch is electrically closed");
 }
 
-template <class A>
-void members(A& a, CycleRecord::Drive& d) {
+void members(internal::Archive& a, CycleRecord::Drive& d) {
   a("name", d.name, "pair of a closing and an opening waveform");
   a("largest_rate_Hz", d.largest, "largest rate with steady cycles");
   a("windows_Hz", d.windows, "ranges of higher rates with steady cycles");
@@ -221,8 +217,7 @@ void members(A& a, CycleRecord::Drive& d) {
   a("waveforms", d.waveforms, "waveform of one cycle by drive: time [s], level [V]");
 }
 
-template <class A>
-void members(A& a, CycleRecord::Course& course) {
+void members(internal::Archive& a, CycleRecord::Course& course) {
   a("time_s", course.time, "time since the start of the run");
   a("tip_gap_m", course.gap, "gap of the contact");
   a.custom("closed", course.closed, internal::closed_json, internal::read_closed,
@@ -230,8 +225,7 @@ void members(A& a, CycleRecord::Course& course) {
                "times in which the contact is closed: begin [s], end [s] (null: to the end of the run), touches"});
 }
 
-template <class A>
-void members(A& a, CycleRecord::Search& search) {
+void members(internal::Archive& a, CycleRecord::Search& search) {
   a("target", search.target, "target of the search");
   a("family", search.family, "waveform family of the closing waveform");
   a("evaluations", search.evaluations, "number of evaluations");
@@ -240,8 +234,7 @@ void members(A& a, CycleRecord::Search& search) {
   a("parameters", search.parameters, "parameters of the found waveforms");
 }
 
-template <class A>
-void members(A& a, CycleRecord& r) {
+void members(internal::Archive& a, CycleRecord& r) {
   members(a, r.origin);
   a("status", r.status, "`done` or `interrupted`");
   a("rate_Hz", r.rate, "cycle rate");
@@ -304,11 +297,6 @@ std::string cycle_csv(const CycleSearchResult& found) {
     if (names[k] != dispersion_drive) driven.emplace(names[k], signals[k]);
   }
   return csv(driven, once.period);
-}
-
-template <>
-std::vector<JsonMember> json_members<CycleRecord>() {
-  return internal::listed<CycleRecord>();
 }
 
 json json_of(const CycleRecord& record) { return internal::record_json(record); }

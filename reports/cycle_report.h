@@ -70,6 +70,8 @@ struct CycleRecord {
 /// Returns the waveforms that a search found as CSV: see csv() in waveforms/export.h.
 [[nodiscard]] std::string cycle_csv(const CycleSearchResult& found);
 
+/// Names the members of the JSON.
+void members(internal::Archive& a, CycleRecord& record);
 [[nodiscard]] nlohmann::json json_of(const CycleRecord& record);
 [[nodiscard]] CycleRecord read_cycles(const nlohmann::json& from);
 /// Returns a report with sentences and tables, and charts of the gap if the results have curves. The document keeps a reference

@@ -17,29 +17,17 @@ namespace internal {
 [[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
 /// Writes the waveforms among which the user can choose, each with the percentiles of its figures of merit over the devices.
 [[nodiscard]] nlohmann::json choices_json(const DevicesFindings& devices);
-/// The JSON of a choice, which has the quantiles of its row.
-struct ChoiceJson {};
-template <class A>
-void members(A& a, ChoiceJson&) {
-  DevicesFindings::Choice choice;
-  std::map<std::string, double> figures;
-  members(a, choice);
-  a("quantile_95", OrInfinite{figures}, "95th percentile of each figure");
-  a("quantile_99", OrInfinite{figures}, "99th percentile of each figure");
-}
 
 }  // namespace internal
 
-template <class A>
-void members(A& a, FulfilledCondition& condition) {
+inline void members(internal::Archive& a, FulfilledCondition& condition) {
   a("condition", condition.text, "the condition, as it was given");
   a("share", condition.share.value, "share of the devices that fulfil it");
   a.pair("interval", condition.share.interval.low, condition.share.interval.high, "95 % confidence interval of the share");
   a("holds", condition.holds, "whether enough devices fulfil it");
 }
 
-template <class A>
-void members(A& a, RobustFindings& robust) {
+inline void members(internal::Archive& a, RobustFindings& robust) {
   a("measure", robust.measure, "minimised measure of risk");
   a("devices", robust.devices, "number of devices of the search");
   a("fresh_devices", robust.fresh_devices, "number of devices new to the search");
@@ -51,8 +39,7 @@ void members(A& a, RobustFindings& robust) {
   a("conditions", robust.conditions, "conditions of the search");
 }
 
-template <class A>
-void members(A& a, DevicesFindings::Row& row) {
+inline void members(internal::Archive& a, DevicesFindings::Row& row) {
   a("name", row.name, "name of the row, such as `plain step`");
   a.object(
       "knowledge",
@@ -73,16 +60,28 @@ void members(A& a, DevicesFindings::Row& row) {
   a("yield", row.yield, "share of devices whose highest rebound is within a height; the name is the height [m]");
 }
 
-template <class A>
-void members(A& a, DevicesFindings::Choice& choice) {
+inline void members(internal::Archive& a, DevicesFindings::Choice& choice) {
   a("name", choice.name, "name of the choice; `default` is that of best.toml");
   a("file", choice.file, "file with the waveform");
   a("waveform", choice.waveform, "waveform family");
   a("tau", choice.tau, "time until the contact force is steady, divided by that of the plain step");
 }
 
-template <class A>
-void members(A& a, DevicesFindings::StablePath& path) {
+namespace internal {
+
+/// The JSON of a choice, which has the quantiles of its row.
+struct ChoiceJson {};
+inline void members(Archive& a, ChoiceJson&) {
+  DevicesFindings::Choice choice;
+  std::map<std::string, double> figures;
+  members(a, choice);
+  a("quantile_95", OrInfinite{figures}, "95th percentile of each figure");
+  a("quantile_99", OrInfinite{figures}, "99th percentile of each figure");
+}
+
+}  // namespace internal
+
+inline void members(internal::Archive& a, DevicesFindings::StablePath& path) {
   a("drives", path.drives, "drives of the path; the first moves the switch to its contact");
   a("share_of_devices", path.share, "share of devices with a stable path to the contact");
   a("reaches_V", path.reaches, "voltage of the first drive at which the nominal design touches");
@@ -91,32 +90,28 @@ void members(A& a, DevicesFindings::StablePath& path) {
   a("rise_s", path.rise, "least time before the first device touches under a slow waveform");
 }
 
-template <class A>
-void members(A& a, DevicesFindings::Courses& courses) {
+inline void members(internal::Archive& a, DevicesFindings::Courses& courses) {
   a("end_s", courses.end, "last instant of the gaps");
   a("unit_m", courses.unit, "unit of the gaps");
   a("plain_step", courses.step, "gaps under the plain step, by device and instant");
   a("best", courses.own, "gaps under best.toml, by device and instant");
 }
 
-template <class A>
-void members(A& a, FrontPoint& point) {
+inline void members(internal::Archive& a, FrontPoint& point) {
   a(key_of(&Metrics::initial_contact_time), point.first_touch, "95th percentile of the first contact time");
   a(key_of(&Metrics::largest_impact_velocity), point.impact_speed, "95th percentile of the impact velocity");
   a("bounce_free", point.bounce_free, "share of bounce-free devices");
   a("candidate", point.candidate, "waveform family, and measure of risk that was minimised");
 }
 
-template <class A>
-void members(A& a, CalibrationError& known) {
+inline void members(internal::Archive& a, CalibrationError& known) {
   a("error", known.error, "relative standard deviation of the error of the measured Vdp");
   a("bounce_free", known.bounce_free, "share of bounce-free devices");
   a(key_of(&Metrics::largest_impact_velocity), internal::OrInfinite{known.impact_speed},
     "95th percentile of the impact velocity");
 }
 
-template <class A>
-void members(A& a, TournamentEntry& contender) {
+inline void members(internal::Archive& a, TournamentEntry& contender) {
   a("measure", contender.measure, "minimised measure of risk; `drawing`: found on the nominal device");
   a("waveform", contender.waveform, "waveform family");
   a("closings", contender.closings, "number of closings of its search");
@@ -124,8 +119,7 @@ void members(A& a, TournamentEntry& contender) {
   a("bounce_free", contender.bounce_free, "share of these devices that are bounce-free");
 }
 
-template <class A>
-void members(A& a, DevicesFindings& devices) {
+inline void members(internal::Archive& a, DevicesFindings& devices) {
   a("spread_assumed", devices.spread_assumed, "whether the scene has no [spread] and the usual one was assumed");
   a("spread", devices.spread, "the process variation in words");
   a("count", devices.count, "number of fresh devices");
@@ -143,7 +137,7 @@ void members(A& a, DevicesFindings& devices) {
   a("rows", devices.rows, "how waveforms do on the fresh devices");
   a.custom(
       "choices", devices.choices, [&](const auto&) { return internal::choices_json(devices); },
-      internal::JsonReader::read<std::vector<DevicesFindings::Choice>>,
+      internal::read_json<std::vector<DevicesFindings::Choice>>,
       internal::Like<std::vector<internal::ChoiceJson>>{"waveforms that are offered, the earliest steady contact first"});
   a("stable_path", internal::OrNull{devices.stable_path}, "path of stable equilibria to the contact");
   a("goal_met", devices.goal_met, "whether the 95th percentile of the rebound height is not significant");

@@ -13,7 +13,6 @@
 #include "document/json_number.h"
 #include "document/quantity.h"
 #include "reports/closing_captions.h"
-#include "reports/member_lister.h"
 #include "reports/study_members.h"
 
 namespace softland {
@@ -135,8 +134,7 @@ std::vector<std::string> warnings_of(const Effects& effects) {
 
 }  // namespace
 
-template <class A>
-void members(A& a, Effect& effect) {
+void members(internal::Archive& a, Effect& effect) {
   a("section", effect.section, "section of the law, such as `gas`");
   a("choice", effect.choice, "name of the law; `none`: left out");
   a("in_scene", effect.in_scene, "whether it is that of the scene");
@@ -149,14 +147,12 @@ void members(A& a, Effect& effect) {
   a("followed_until_s", effect.end, "time at which a costly closing was stopped");
 }
 
-template <class A>
-void members(A& a, NotCompared& law) {
+void members(internal::Archive& a, NotCompared& law) {
   a("choice", law.choice, "name of the law");
   a("reason", law.reason, "why it cannot be compared");
 }
 
-template <class A>
-void members(A& a, EffectAblation& one) {
+void members(internal::Archive& a, EffectAblation& one) {
   a("effect", one.what.effect, "name of the effect");
   a("choice", one.what.choice, "what the scene has");
   a("magnitude", one.what.magnitude, "size of the effect");
@@ -170,23 +166,22 @@ void members(A& a, EffectAblation& one) {
 // The JSON of compared_json().
 template <class Closing>
 struct ComparedJson {};
-template <class A, class Closing>
-void members(A& a, ComparedJson<Closing>&) {
+template <class Closing>
+void members(internal::Archive& a, ComparedJson<Closing>&) {
   Closing closing;
   members(a, closing);
   a("relative_change", std::map<std::string, double>{}, "relative change of each compared figure from the closing of the scene");
 }
 
-template <class A>
-void members(A& a, EffectsRecord& record) {
+void members(internal::Archive& a, EffectsRecord& record) {
   Effects& found = record.found;
   members(a, record.origin);
   const auto compared = [&](const auto& closings) { return compared_json(closings, found.own("gas").metrics); };
-  a.custom("effects", found.list, compared, internal::JsonReader::read<std::vector<Effect>>,
+  a.custom("effects", found.list, compared, internal::read_json<std::vector<Effect>>,
            internal::Like<std::vector<ComparedJson<Effect>>>{"closings with each law"});
   require(std::ranges::any_of(found.list, [](const Effect& e) { return e.in_scene && e.section == "gas"; }),
           "\"effects\" lacks the gas of the scene");
-  a.custom("left_out", found.ablations, compared, internal::JsonReader::read<std::vector<EffectAblation>>,
+  a.custom("left_out", found.ablations, compared, internal::read_json<std::vector<EffectAblation>>,
            internal::Like<std::vector<ComparedJson<EffectAblation>>>{"closings without each effect"});
   a("not_compared", found.not_compared, "laws that are impossible for the scene");
   a("duration_s", found.window, "simulated time");
@@ -199,13 +194,6 @@ void members(A& a, EffectsRecord& record) {
   for (const Figure& f : compared_figures) spread[std::string(f.quantity())] = found.spread("gas", f);
   a.derived("relative_spread", std::map<std::string, std::map<std::string, double>>{{"gas", std::move(spread)}},
             "by section, range of each figure over the laws, relative to that of the scene");
-}
-
-template <>
-std::vector<JsonMember> json_members<EffectsRecord>() {
-  EffectsRecord record;
-  record.found.list.push_back({.section = "gas", .in_scene = true});
-  return internal::listed(record);
 }
 
 json json_of(const EffectsRecord& record) { return internal::record_json(record); }

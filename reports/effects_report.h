@@ -15,6 +15,8 @@ struct EffectsRecord {
   Effects found;
 };
 
+/// Names the members of the JSON.
+void members(internal::Archive& a, EffectsRecord& record);
 [[nodiscard]] nlohmann::json json_of(const EffectsRecord& record);
 /// Reads the results of `softland effects`. Throws InvalidInput for anything but the JSON of json_of().
 [[nodiscard]] EffectsRecord read_effects(const nlohmann::json& from);

@@ -14,7 +14,6 @@
 #include "base/require.h"
 #include "document/quantity.h"
 #include "reports/fit_text.h"
-#include "reports/member_lister.h"
 #include "reports/study_members.h"
 
 namespace softland {
@@ -288,16 +287,14 @@ namespace internal {
 struct Prior {
   double mean = Metrics::unset, deviation = Metrics::unset;
 };
-template <class A>
-void members(A& a, Prior& prior) {
+void members(Archive& a, Prior& prior) {
   a("mean", prior.mean, "mean of the prior");
   a("standard_deviation", prior.deviation, "standard deviation of the prior");
 }
 
 }  // namespace internal
 
-template <class A>
-void members(A& a, FittedUnknown& u) {
+void members(internal::Archive& a, FittedUnknown& u) {
   a("key", u.name, "entry of [spread], or key of the scene");
   a("unit", u.unit, "its unit; empty for a factor");
   a("nominal", u.nominal, "value in the given scene");
@@ -312,8 +309,7 @@ void members(A& a, FittedUnknown& u) {
   if (a.has(!u.device.empty())) a("device", u.device, "device to which the unknown belongs, if there are several");
 }
 
-template <class A>
-void members(A& a, NextMeasurement& next) {
+void members(internal::Archive& a, NextMeasurement& next) {
   a("quantity", internal::Chosen{next.what, measurables}, "measured quantity");
   a("name", next.name, "the measurement in words");
   a("level_V", internal::OrNull{next.level}, "voltage at which it is made");
@@ -321,8 +317,7 @@ void members(A& a, NextMeasurement& next) {
   a("reduction", next.reduction, "relative decrease of all standard errors");
 }
 
-template <class A>
-void members(A& a, FitResidual& r) {
+void members(internal::Archive& a, FitResidual& r) {
   a("measurement", r.measurement, "number of the measurement in the bench file");
   a("quantity", internal::Chosen{r.what, measurables}, "measured quantity");
   a("drive", r.drive, "drive of the measurement");
@@ -337,29 +332,25 @@ void members(A& a, FitResidual& r) {
   a("time_s", r.time, "time of the row of a curve");
 }
 
-template <class A>
-void members(A& a, FittedTrace& trace) {
+void members(internal::Archive& a, FittedTrace& trace) {
   a("measurement", trace.measurement, "number of the measurement in the bench file");
   a("quantity", internal::Chosen{trace.what, measurables}, "measured quantity");
   a("until_s", trace.until, "time of the last row that the fit uses");
   a("recorded_s", trace.recorded, "time of the last recorded row");
 }
 
-template <class A>
-void members(A& a, FitRecord::Population::Variable& variable) {
+void members(internal::Archive& a, FitRecord::Population::Variable& variable) {
   a("key", variable.key, "entry of [spread]");
   a("mean", variable.mean, "mean over the devices");
   a("standard_deviation", variable.deviation, "standard deviation over the devices");
 }
 
-template <class A>
-void members(A& a, FitRecord::Population& population) {
+void members(internal::Archive& a, FitRecord::Population& population) {
   a("variables", population.variables, "quantities that differ between devices");
   a("correlation", population.correlation, "their correlation");
 }
 
-template <class A>
-void members(A& a, FitRecord& fit) {
+void members(internal::Archive& a, FitRecord& fit) {
   members(a, fit.origin);
   a("status", fit.status, "`done`, `not_believed` or `numerical_failure`");
   a("doubts", fit.doubts, "reasons to doubt the fit, in words");
@@ -417,11 +408,6 @@ FitRecord record_of(const Fit& fit, const std::string& command) {
       population.variables.push_back({found->names[i], found->mean[i], found->deviation[i]});
   }
   return record;
-}
-
-template <>
-std::vector<JsonMember> json_members<FitRecord>() {
-  return internal::listed<FitRecord>();
 }
 
 json json_of(const FitRecord& record) { return internal::record_json(record); }

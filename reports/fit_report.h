@@ -48,6 +48,8 @@ struct FitRecord {
 };
 [[nodiscard]] FitRecord record_of(const Fit& fit, const std::string& command);
 
+/// Names the members of the JSON.
+void members(internal::Archive& a, FitRecord& record);
 [[nodiscard]] nlohmann::json json_of(const FitRecord& record);
 [[nodiscard]] FitRecord read_fit(const nlohmann::json& from);
 /// Returns a document with fitted values and their intervals, unknowns that the data cannot tell apart, further data that could

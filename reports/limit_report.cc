@@ -14,7 +14,6 @@
 #include "document/svg.h"
 #include "reports/closing_charts.h"
 #include "reports/closing_record.h"
-#include "reports/member_lister.h"
 #include "reports/record_file.h"
 #include "reports/study_members.h"
 #include "studies/closing/summits_at_hold.h"
@@ -144,8 +143,7 @@ std::string quasi_static_prose(const LimitRecord& limit) {
 
 }  // namespace
 
-template <class A>
-void members(A& a, LeastTime& least) {
+void members(internal::Archive& a, LeastTime& least) {
   a("status", least.status, "outcome of the search for the least time");
   a("message", least.message, "why it is not done");
   a("from_start", least.from_start, "whether it was found from the given waveform");
@@ -158,22 +156,19 @@ void members(A& a, LeastTime& least) {
   a("distance_from_rest", least.distance, "largest difference of a mode from its closed equilibrium, in contact gaps");
 }
 
-template <class A>
-void members(A& a, LimitRecord::QuasiStatic& found) {
+void members(internal::Archive& a, LimitRecord::QuasiStatic& found) {
   a("drive", found.drive, "drive of the slow waveform");
   a("touch_places_m", found.touch_places, "width of the range of positions at which 90 % of the devices touch");
   a("steady_s", found.steady, "time from which the force is steady under the plain step");
   a("speed_m_s", found.speed, "least impact velocity of such a waveform");
 }
 
-template <class A>
-void members(A& a, LimitRecord::Check& check) {
+void members(internal::Archive& a, LimitRecord::Check& check) {
   a("name", check.name, "what differs in the repeated simulation");
   a("metrics", check.metrics, "its figures");
 }
 
-template <class A>
-void members(A& a, LimitRecord::Landing& landing) {
+void members(internal::Archive& a, LimitRecord::Landing& landing) {
   a("way", landing.path, "least time of this landing");
   a("at_rest", landing.at_rest, "whether all modes end at rest");
   a("catch_delay_s", landing.catch_delay, "time from first contact to the pull that keeps the switch closed");
@@ -184,8 +179,7 @@ void members(A& a, LimitRecord::Landing& landing) {
   a("scene", landing.scene, "scene with its waveforms");
 }
 
-template <class A>
-void members(A& a, LimitRecord& limit) {
+void members(internal::Archive& a, LimitRecord& limit) {
   members(a, limit.origin);
   a("status", limit.status, "outcome of the search for the least time, or `interrupted`");
   a("actuator", internal::Chosen{limit.actuator, actuators}, "controlled drives");
@@ -253,13 +247,6 @@ LimitRecord record_of(const Limit& limit, const std::string& command) {
     }
   }
   return record;
-}
-
-template <>
-std::vector<JsonMember> json_members<LimitRecord>() {
-  LimitRecord record;
-  record.landed.emplace();
-  return internal::listed(record);
 }
 
 json json_of(const LimitRecord& record) { return internal::record_json(record); }

@@ -54,6 +54,8 @@ struct LimitRecord {
 };
 [[nodiscard]] LimitRecord record_of(const Limit& limit, const std::string& command);
 
+/// Names the members of the JSON.
+void members(internal::Archive& a, LimitRecord& record);
 [[nodiscard]] nlohmann::json json_of(const LimitRecord& record);
 [[nodiscard]] LimitRecord read_limit(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const LimitRecord& record);

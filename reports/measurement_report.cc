@@ -9,7 +9,6 @@
 #include "document/document.h"
 #include "document/quantity.h"
 #include "reports/estimates.h"
-#include "reports/member_lister.h"
 #include "reports/study_members.h"
 #include "sampling/statistics.h"
 
@@ -64,8 +63,7 @@ ReportTable figures_table(const MeasurementsRecord& record) {
 
 }  // namespace
 
-template <class A>
-void members(A& a, MeasurementsRecord::Figure& figure) {
+void members(internal::Archive& a, MeasurementsRecord::Figure& figure) {
   a("name", figure.name, "name of the figure");
   a("unit", figure.unit, "its unit");
   a("nominal", figure.nominal, "value of the nominal design");
@@ -74,8 +72,7 @@ void members(A& a, MeasurementsRecord::Figure& figure) {
   a("devices", figure.devices, "number of devices that have it");
 }
 
-template <class A>
-void members(A& a, MeasurementsRecord::Row& row) {
+void members(internal::Archive& a, MeasurementsRecord::Row& row) {
   Prediction& p = row.found;
   a("name", p.name, "what is measured, in words");
   a("measured", row.measured, "names of the measured figures");
@@ -85,7 +82,7 @@ void members(A& a, MeasurementsRecord::Row& row) {
   a("time_unexplained", p.time_unexplained, "share of the variance of the factor of time that stays");
   a("piezo_miss", p.piezo_miss, "RMS error of the logarithm of the factor of piezo voltage");
   a("piezo_unexplained", p.piezo_unexplained, "share of the variance of the factor of piezo voltage that stays");
-  if constexpr (A::reads) p.is_judged = a.at("bounce_free").is_object();
+  if (a.reads()) p.is_judged = internal::value_at(a.from(), "bounce_free").is_object();
   if (!a.has(p.is_judged)) return;
   a("score_95", p.score, "95th percentile of the cost of `bounce`");
   a("bounce_free", p.bounce_free, "bounce-free devices");
@@ -93,8 +90,7 @@ void members(A& a, MeasurementsRecord::Row& row) {
   a("major_bounce_height_95_m", p.rebound_height, "95th percentile of the highest rebound");
 }
 
-template <class A>
-void members(A& a, MeasurementsRecord& record) {
+void members(internal::Archive& a, MeasurementsRecord& record) {
   members(a, record.origin);
   a("status", internal::Stopped{record.interrupted}, "`done` or `interrupted`");
   a("devices", record.devices, "number of devices");
@@ -126,11 +122,6 @@ MeasurementsRecord record_of(const IdentificationStudy& study, const Identificat
   };
   record.references = rows(study.references), record.predictions = rows(study.predictions);
   return record;
-}
-
-template <>
-std::vector<JsonMember> json_members<MeasurementsRecord>() {
-  return internal::listed<MeasurementsRecord>();
 }
 
 json json_of(const MeasurementsRecord& record) { return internal::record_json(record); }

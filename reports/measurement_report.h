@@ -34,6 +34,8 @@ struct MeasurementsRecord {
 [[nodiscard]] MeasurementsRecord record_of(const IdentificationStudy& study, const IdentificationOptions& options,
                                            const std::string& command);
 
+/// Names the members of the JSON.
+void members(internal::Archive& a, MeasurementsRecord& record);
 [[nodiscard]] nlohmann::json json_of(const MeasurementsRecord& record);
 [[nodiscard]] MeasurementsRecord read_measurements(const nlohmann::json& from);
 /// Returns a table of at most `most` rows, without pairs of quantities that predict no better than one quantity of the pair

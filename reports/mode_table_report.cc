@@ -14,7 +14,6 @@
 #include "document/document.h"
 #include "document/quantity.h"
 #include "document/svg.h"
-#include "reports/member_lister.h"
 #include "reports/study_members.h"
 
 namespace softland {
@@ -134,8 +133,7 @@ ModesRecord record_of(const ModeTable& table, const std::string& command) {
   return record;
 }
 
-template <class A>
-void members(A& a, ModesRecord::Mode& mode) {
+void members(internal::Archive& a, ModesRecord::Mode& mode) {
   a("number", mode.number, "number of the mode in the file");
   a("frequency_Hz", mode.frequency, "its frequency");
   a("kind", mode.kind, "kind of the motion, such as bending");
@@ -143,8 +141,7 @@ void members(A& a, ModesRecord::Mode& mode) {
   a("taken_as", internal::OrNull{mode.taken_as}, "column in the table of modes; null: left out");
 }
 
-template <class A>
-void members(A& a, ModesRecord::File& file) {
+void members(internal::Archive& a, ModesRecord::File& file) {
   a("summary", file.summary, "the file in one line");
   a("format", file.format, "format of the file");
   a("nodes", file.nodes, "number of nodes; 0 for a table of modes");
@@ -155,24 +152,16 @@ void members(A& a, ModesRecord::File& file) {
 }
 
 // In JSON, the members of ModesRecord::file are at the top level.
-template <class A>
-void members(A& a, ModesRecord& record) {
+void members(internal::Archive& a, ModesRecord& record) {
   members(a, record.origin);
   a("natural_frequencies_rad_s", record.frequencies, "natural angular frequencies");
-  if constexpr (A::reads) {
-    if (a.at("format").is_string()) record.file.emplace();
+  if (a.reads()) {
+    if (internal::value_at(a.from(), "format").is_string()) record.file = ModesRecord::File{};
   }
   if (record.file)
     members(a, *record.file);
   else
     a("warnings", record.warnings, "warnings of the scene");
-}
-
-template <>
-std::vector<JsonMember> json_members<ModesRecord>() {
-  std::vector<JsonMember> all = internal::listed<ModesRecord>();
-  internal::add_members(all, internal::listed(ModesRecord{.file = ModesRecord::File{}}));
-  return all;
 }
 
 nlohmann::json json_of(const ModesRecord& record) { return internal::record_json(record); }

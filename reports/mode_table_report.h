@@ -35,6 +35,8 @@ struct ModesRecord {
   std::optional<File> file = {};
 };
 [[nodiscard]] ModesRecord record_of(const ModeTable& table, const std::string& command);
+/// Names the members of the JSON.
+void members(internal::Archive& a, ModesRecord& record);
 [[nodiscard]] nlohmann::json json_of(const ModesRecord& record);
 [[nodiscard]] ModesRecord read_modes(const nlohmann::json& from);
 /// Returns text: a line about the file of modes, and a table of its modes.

@@ -11,6 +11,10 @@
 
 namespace softland {
 
+namespace internal {
+class Archive;  // writes, reads or lists the members of a record: see reports/record.h
+}
+
 /// The origin of the results of a study; `scene` is null if the study has no scene.
 struct Origin {
   std::string kind;  ///< name of the verb that gave the results, by which the verb `report` recognises their JSON

@@ -21,8 +21,7 @@ namespace internal {
 
 }  // namespace internal
 
-template <class A>
-void members(A& a, PullInRecord& found) {
+inline void members(internal::Archive& a, PullInRecord& found) {
   a("static_V", found.static_pull_in, "static pull-in voltage");
   a("static_kind", internal::OrNull{found.static_kind}, "how the stable equilibrium ends: `fold` or `contact`");
   a("deflection_m", found.deflection, "deflection of the contact point at the static voltage");
@@ -37,10 +36,9 @@ void members(A& a, PullInRecord& found) {
                "each voltage by number of modes, `converged`: extrapolated; null for a plate and a table of modes"});
 }
 
-template <class A>
-void members(A& a, StablePathRecord& path) {
+inline void members(internal::Archive& a, StablePathRecord& path) {
   std::vector<std::string> drives{path.drive};
-  if (A::reads) drives.clear();
+  if (a.reads()) drives.clear();
   a("drives", drives, "drive that moves the switch to its contact");
   if (!drives.empty()) path.drive = drives.front();
   a("reaches_V", path.reaches, "level at which the nominal design touches");

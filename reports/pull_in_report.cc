@@ -15,7 +15,6 @@
 #include "document/text.h"
 #include "model/pull_in.h"
 #include "reports/closing_record.h"
-#include "reports/member_lister.h"
 #include "reports/pull_in_members.h"
 #include "studies/closing/closed_state.h"
 #include "studies/devices/stable_approach.h"
@@ -132,21 +131,18 @@ json internal::voltages_by_modes_json(const std::optional<VoltagesByModes>& foun
 std::optional<VoltagesByModes> internal::read_voltages_by_modes(const json& from) {
   if (!from.is_object()) return std::nullopt;
   VoltagesByModes all;
-  const JsonReader found(from);
-  for (const auto& [key, voltage] : by_modes_rows) all.*voltage = read_by_modes(found.at(key)).value_or(ByModes{});
+  for (const auto& [key, voltage] : by_modes_rows) all.*voltage = read_by_modes(value_at(from, key)).value_or(ByModes{});
   return all;
 }
 
-template <class A>
-void members(A& a, ElectrodeRecord& electrode) {
+void members(internal::Archive& a, ElectrodeRecord& electrode) {
   a("status", electrode.status, "outcome for the electrode");
   a("pull_in", electrode.volts, "its pull-in voltages");
   if (a.has(!electrode.bias.empty())) a("bias_V", electrode.bias, "constant voltages of the other drives, if not 0");
   if (a.has(!electrode.bias_factor.empty())) a("bias_factor", electrode.bias_factor, "factor of a dispersion force, if not 1");
 }
 
-template <class A>
-void members(A& a, SweepPoint& point) {
+void members(internal::Archive& a, SweepPoint& point) {
   a("voltage_V", point.voltage, "voltage of the swept electrode");
   a("deflection_m", point.deflection, "deflection of the contact point");
   a("capacitance_F", point.capacitance, "capacitance of the electrode");
@@ -163,11 +159,10 @@ void members(A& a, SweepPoint& point) {
       internal::Like<std::string>{"state of the switch: `open`, `closed` or `collapsed_onto_electrode`"});
 }
 
-template <class A>
-void members(A& a, PullInsRecord& record) {
+void members(internal::Archive& a, PullInsRecord& record) {
   a("electrodes", record.electrodes, "each electrode by its name");
   // In JSON, the pull-in members of a single electrode are repeated at the top level.
-  if (!A::reads && record.electrodes.size() == 1) members(a, record.electrodes.begin()->second);
+  if (!a.reads() && record.electrodes.size() == 1) members(a, record.electrodes.begin()->second);
   std::map<std::string, PullInRecord> voltages;
   for (const auto& [name, one] : record.electrodes) voltages[name] = one.volts;
   if (record.electrodes.size() != 1) a.derived("pull_in", voltages, "voltages of several electrodes, by name");
@@ -268,13 +263,6 @@ std::string words_of(const std::optional<StablePathRecord>& path) {
     words += fmt::format("; {} of the devices do so within {}", internal::percent(*path->share),
                          internal::given_quantity(path->limit, "V"));
   return words;
-}
-
-template <>
-std::vector<JsonMember> json_members<PullInsRecord>() {
-  std::vector<JsonMember> all = internal::listed<PullInsRecord>();
-  internal::add_members(all, internal::listed(PullInsRecord{.electrodes = {{"main", {}}}}));
-  return all;
 }
 
 json json_of(const PullInsRecord& record) { return internal::record_json(record); }

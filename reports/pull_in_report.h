@@ -83,6 +83,8 @@ struct PullInsRecord {
 /// computation.
 inline constexpr const char* stable_path_left_out = "the stable path";
 
+/// Names the members of the JSON.
+void members(internal::Archive& a, PullInsRecord& record);
 [[nodiscard]] nlohmann::json json_of(const PullInsRecord& record);
 [[nodiscard]] PullInsRecord read_pull_ins(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const PullInsRecord& record);

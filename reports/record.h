@@ -1,14 +1,14 @@
 // One list of members serves to write and to read a record as JSON, and to describe it in the manual. `members(archive, record)`,
-// a function template beside the type of the record, names every member once, with its meaning. JsonWriter, JsonReader and
-// MemberLister (reports/member_lister.h) are archives, as in Drake's Serialize. Only the lister uses the meaning.
+// a function beside the type of the record, names every member once, with its meaning, as in Drake's Serialize. The archive
+// writes, reads or lists these members; only a list uses the meaning.
 //
-// A non-finite number is null in JSON. JsonReader reads the members that are present. A number that is missing or null becomes
-// NaN. Any other member that is missing or of another type keeps its value in the record.
+// A non-finite number is null in JSON. An archive that reads takes the members that are present. A number that is missing or null
+// becomes NaN. Any other member that is missing or of another type keeps its value in the record.
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -17,6 +17,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -24,7 +25,19 @@
 #include "document/json_number.h"
 #include "objectives/figure_values.h"
 
-namespace softland::internal {
+namespace softland {
+
+/// A member of a record of JSON, for the reference of the manual.
+struct JsonMember {
+  /// Key of the member. The key of a list ends in "[]", and that of members with any names in ".NAME".
+  std::string key;
+  std::string type;                      ///< "number", "list of texts", "record"
+  std::string about;                     ///< meaning of the member; may be empty
+  std::string record;                    ///< name of the C++ type of a record, which tells equal records; empty for other members
+  std::vector<JsonMember> members = {};  ///< members of a record, or of each record of a list
+};
+
+namespace internal {
 
 using nlohmann::json;
 
@@ -79,284 +92,235 @@ struct Written {
   std::string_view type, about;
 };
 
-template <class Record>
-[[nodiscard]] json record_json(const Record& record);
+/// Adds members to a list. A key that is there already gets only the members of its record that it lacks.
+void add_members(std::vector<JsonMember>& all, std::vector<JsonMember> more);
 /// Checks that JSON was read completely: throws InvalidInput with the first difference between the JSON `read` and the JSON
 /// `written` from the record that was read.
 void require_same(const json& written, const json& read);
+/// Returns the value of a key; null if the key is missing or `object` is none.
+[[nodiscard]] const json& value_at(const json& object, std::string_view key);
 
-class JsonWriter {
+/// One value of JSON that is written from a value of C++, read into it, or listed for the manual. What members() of a record
+/// needs is public; transfer() has an overload for each type of value.
+class Archive {
  public:
-  static constexpr bool reads = false, lists = false;
-  /// Returns whether the writer writes members of a record that exist only if `where` holds.
-  [[nodiscard]] static bool has(bool where) { return where; }
+  [[nodiscard]] static Archive writer() { return Archive(Task::write, nullptr); }
+  /// The reader keeps a reference to `from`, which must outlive the reader.
+  [[nodiscard]] static Archive reader(const json& from) { return Archive(Task::read, &from); }
+  [[nodiscard]] static Archive lister() { return Archive(Task::list, nullptr); }
+  [[nodiscard]] bool reads() const { return task_ == Task::read; }
+  [[nodiscard]] bool lists() const { return task_ == Task::list; }
+  /// Returns whether a member that exists only where `where` holds is transferred: only an archive that writes leaves it out.
+  [[nodiscard]] bool has(bool where) const { return where || task_ != Task::write; }
 
   template <class T>
-  void operator()(std::string_view key, const T& value, std::string_view) {
-    json_[std::string(key)] = of(value);
+  void operator()(std::string_view key, T&& value, std::string_view about) {
+    member(key, erased(value), about);
   }
-  template <class T>
-  void operator()(std::string_view key, const std::optional<T>& value, std::string_view about) {
-    if (value) (*this)(key, *value, about);
-  }
-  /// Writes two numbers as a list of JSON.
-  void pair(std::string_view key, double low, double high, std::string_view) {
-    json_[std::string(key)] = {json_number(low), json_number(high)};
-  }
-  /// Writes a value that a separate function converts to JSON; `shape` is a Like, a OneOrMore or a Written.
+  /// Transfers two numbers as a list of JSON.
+  void pair(std::string_view key, double& low, double& high, std::string_view about);
+  /// Transfers a value by functions of its own; `shape` is a Like, a OneOrMore or a Written.
   template <class T, class Write, class Read, class Shape>
-  void custom(std::string_view key, const T& value, const Write& write, const Read&, const Shape&) {
-    json_[std::string(key)] = write(value);
+  void custom(std::string_view key, T& value, const Write& write, const Read& read, const Shape& shape) {
+    if (task_ == Task::write)
+      json_[std::string(key)] = write(value);
+    else if (task_ == Task::read)
+      value = read(value_at(*read_, key));
+    else
+      list(key, shape);
   }
   /// Writes a value that is computed from other members of the record; a reader skips it.
   template <class T>
   void derived(std::string_view key, const T& value, std::string_view about) {
-    (*this)(key, value, about);
+    if (task_ != Task::read) member(key, erased(value), about);
   }
-  /// Writes an object with the members that `inside(archive)` names.
+  /// Transfers an object with the members that `inside(archive)` names.
   template <class Inside>
-  void object(std::string_view key, const Inside& inside, std::string_view) {
-    JsonWriter own;
+  void object(std::string_view key, const Inside& inside, std::string_view about) {
+    if (task_ == Task::read && !value_at(*read_, key).is_object()) return;
+    Archive own = opened(key);
     inside(own);
-    json_[std::string(key)].update(own.json_);
+    close(key, std::move(own), about);
   }
-  /// Writes the figures of merit of a group.
-  void figures(const FigureValues& values, const FigureGroup& group) {
-    for (const Figure& figure : all_figures) {
-      if (group.has(figure) && figure.is_asked(values.asked)) json_[std::string(figure.key)] = of(figure, values[figure]);
-    }
-  }
+  /// Transfers the figures of merit of a group.
+  void figures(FigureValues& values, const FigureGroup& group);
+
+  /// Returns the JSON that is read.
+  [[nodiscard]] const json& from() const { return *read_; }
+  /// Returns the JSON that was written.
   [[nodiscard]] json take() && { return std::move(json_); }
+  /// Returns the members of the record that was listed.
+  [[nodiscard]] std::vector<JsonMember> take_members() && { return std::move(listed_.members); }
 
- private:
-  static json of(double value) { return json_number(value); }
-  static json of(bool value) { return value; }
-  static json of(const std::string& text) { return text; }
-  static json of(const json& as_it_is) { return as_it_is; }
-  static json of(Stopped study) { return study.interrupted ? "interrupted" : "done"; }
-  static json of(Status status) { return to_string(status); }
-  template <class Rows>
-  static json of(const Chosen<Rows>& choice) {
-    return name_of(choice.rows, choice.value);
-  }
-  template <std::integral Whole>
-  static json of(Whole value) {
-    return value;
-  }
-  static json of(const Count& count) { return std::isfinite(count.value) ? json(std::llround(count.value)) : json(); }
-  template <class T>
-  static json of(const OrInfinite<T>& inner) {
-    return of(inner.value);
-  }
-  static json of(const OrNull<std::string>& text) { return text.value.empty() ? json() : json(text.value); }
-  template <class T>
-  static json of(const OrNull<std::optional<T>>& inner) {
-    return inner.value ? of(*inner.value) : json();
-  }
-  static json of(const Figure& figure, double value) {
-    if (!std::isfinite(value)) return nullptr;
-    if (figure.is_yes_or_no()) return value != 0;
-    return figure.is_count() ? json(std::llround(value)) : json(value);
-  }
   template <class T, std::size_t n>
-  static json of(const std::array<T, n>& all) {
-    return list(all);
+  static void transfer(Archive& at, std::array<T, n>& all) {
+    at.begin_list();
+    for (std::size_t k = 0; k < n; ++k) at.item(k, erased(all[k]));
+    if (at.lists()) at.list_array(n);
   }
   template <class T>
-  static json of(const std::vector<T>& all) {
-    return list(all);
-  }
-  template <class T>
-  static json of(const std::map<std::string, T>& all) {
-    json object = json::object();
-    for (const auto& [key, value] : all) object[key] = of(value);
-    return object;
-  }
-  template <class Record>
-  requires std::is_class_v<Record>
-  static json of(const Record& record) { return record_json(record); }
-  template <class List>
-  static json list(const List& all) {
-    json values = json::array();
-    for (const auto& one : all) values.push_back(of(one));
-    return values;
-  }
-
-  json json_ = json::object();
-};
-
-class JsonReader {
- public:
-  static constexpr bool reads = true, lists = false;
-  [[nodiscard]] static bool has(bool) { return true; }
-
-  /// The reader keeps a reference to `json`, which must outlive the reader.
-  explicit JsonReader(const json& json) : json_(&json) {}
-
-  template <class T>
-  void operator()(std::string_view key, T&& value, std::string_view) {
-    take(at(key), value);
-  }
-  void pair(std::string_view key, double& low, double& high, std::string_view) {
-    const json& list = at(key);
-    if (!list.is_array() || list.size() != 2) return;
-    take(list[0], low);
-    take(list[1], high);
-  }
-  template <class T, class Write, class Read, class Shape>
-  void custom(std::string_view key, T& value, const Write&, const Read& read, const Shape&) {
-    value = read(at(key));
-  }
-  template <class T>
-  void derived(std::string_view, const T&, std::string_view) const {}
-  template <class Inside>
-  void object(std::string_view key, const Inside& inside, std::string_view) {
-    if (!at(key).is_object()) return;
-    JsonReader own(at(key));
-    inside(own);
-  }
-  void figures(FigureValues& values, const FigureGroup&) {
-    for (const Figure& figure : all_figures) {
-      if (figure.asked != nullptr && json_->contains(figure.key)) values.asked.*figure.asked = true;
-      take(figure, at(figure.key), values[figure]);
+  static void transfer(Archive& at, std::vector<T>& all) {
+    at.begin_list();
+    if (at.lists()) {
+      T one = blank<T>();
+      return at.list_items(erased(all.empty() ? one : all.front()));
     }
+    for (std::size_t k = 0; !at.reads() && k < all.size(); ++k) at.item(k, erased(all[k]));
+    for (std::size_t k = 0, n = at.size(); k < n; ++k) at.item(k, erased(all.emplace_back(blank<T>())));
   }
-  /// Reads a value of a type with members(), from the JSON members that are present.
   template <class T>
-  [[nodiscard]] static T read(const json& from) {
-    T value = blank<T>();
-    take(from, value);
-    return value;
+  static void transfer(Archive& at, std::map<std::string, T>& all) {
+    at.begin_object();
+    for (const std::string& key : at.keys()) all.emplace(key, blank<T>());
+    for (auto& [key, value] : all) at.item(key, erased(value));
+    if (!at.lists()) return;
+    T one = blank<T>();
+    at.list_named(erased(one));
   }
-  /// Returns the JSON that this reader reads.
-  [[nodiscard]] const json& whole() const { return *json_; }
-  /// Returns the JSON value of a key; null if the key is missing.
-  [[nodiscard]] const json& at(std::string_view key) const {
-    static const json nothing;
-    if (!json_->is_object()) return nothing;
-    const auto found = json_->find(key);
-    return found == json_->end() ? nothing : *found;
-  }
-
- private:
-  static void take(const json& from, double& value) {
-    if (from.is_number()) value = from.get<double>();
-    if (from.is_null()) value = Metrics::unset;
-  }
-  static void take(const json& from, json& as_it_is) { as_it_is = from; }
-  static void take(const json& from, Stopped study) { study.interrupted = from == "interrupted"; }
-  static void take(const json& from, Status& status) {
-    for (int k = 0; k <= static_cast<int>(Status::interrupted); ++k) {
-      if (from == to_string(static_cast<Status>(k))) status = static_cast<Status>(k);
+  template <class T>
+  static void transfer(Archive& at, std::optional<T>& value) {
+    if (at.task_ == Task::read) {
+      const bool is_object = std::is_class_v<T> && !std::is_same_v<T, std::string>;
+      if (at.read_->is_null() || (is_object && !at.read_->is_object())) return;
+      value = blank<T>();
     }
+    at.is_absent_ = at.task_ == Task::write && !value;
+    if (at.is_absent_) return;
+    T unset = blank<T>();
+    transfer(at, value ? *value : unset);
+  }
+  template <class T>
+  static void transfer(Archive& at, OrNull<std::optional<T>>& inner) {
+    transfer(at, inner.value);
+    at.is_absent_ = false;
   }
   template <class Rows>
-  static void take(const json& from, Chosen<Rows> choice) {
-    if (!from.is_string()) return;
-    if (const auto* const row = find_named(choice.rows, from.get<std::string>())) choice.value = row->value;
-  }
-  static void take(const json& from, bool& value) {
-    if (from.is_boolean()) value = from.get<bool>();
-  }
-  static void take(const json& from, std::string& text) {
-    if (from.is_string()) text = from.get<std::string>();
-  }
-  static void take(const json& from, std::uint64_t& value) {
-    if (from.is_number_integer() && from >= 0) value = from.get<std::uint64_t>();
-  }
-  template <std::signed_integral Whole>
-  static void take(const json& from, Whole& value) {
-    const double number = from.is_number() ? from.get<double>() : std::numeric_limits<double>::quiet_NaN();
-    if (std::abs(number) <= static_cast<double>(std::numeric_limits<int>::max())) value = static_cast<Whole>(number);
-  }
-  static void take(const json& from, Count count) { take(from, count.value); }
-  static void take(const json& from, OrInfinite<double> number) {
-    number.value = std::numeric_limits<double>::infinity();
-    if (!from.is_null()) number.value = from.is_number() ? from.get<double>() : Metrics::unset;
-  }
-  static void take(const json& from, OrInfinite<std::map<std::string, double>> numbers) {
-    if (!from.is_object()) return;
-    for (const auto& [key, value] : from.items()) take(value, OrInfinite<double>{numbers.value[key]});
-  }
-  template <class T>
-  static void take(const json& from, OrNull<T> inner) {
-    take(from, inner.value);
-  }
-  static void take(const Figure& figure, const json& from, double& value) {
-    value = figure.is_yes_or_no() && from.is_boolean() ? from.get<bool>() : Metrics::unset;
-    take(from, value);
-  }
-  template <class T>
-  static void take(const json& from, std::optional<T>& value) {
-    if (from.is_null() || (std::is_class_v<T> && !from.is_object() && !std::is_same_v<T, std::string>)) return;
-    value = read<T>(from);
-  }
-  // Reads a list of numbers and keeps its length: an entry that is not a number becomes NaN.
-  template <class T>
-  static void take(const json& from, std::vector<T>& all) {
-    if (!from.is_array()) return;
-    all.reserve(from.size());
-    for (const json& one : from) all.push_back(read<T>(one));
-  }
-  static void take(const json& from, std::vector<std::string>& all) {
-    if (!from.is_array()) return;
-    for (const json& one : from) {
-      if (one.is_string() && one != "") all.push_back(one.get<std::string>());
-    }
-  }
-  // A point in JSON is a list of two entries; other entries in a list of points are skipped.
-  static bool is_point(const json& from) { return from.is_array() && from.size() == 2; }
-  static std::array<double, 2> point(const json& from) {
-    std::array<double, 2> both{Metrics::unset, Metrics::unset};
-    for (std::size_t k = 0; k < 2; ++k) take(from[k], both[k]);
-    return both;
-  }
-  static void take(const json& from, std::vector<std::array<double, 2>>& all) {
-    if (!from.is_array()) return;
-    for (const json& one : from) {
-      if (is_point(one) && one[0].is_number()) all.push_back(point(one));
-    }
-  }
-  static void take(const json& from, std::map<std::string, std::array<double, 2>>& all) {
-    if (!from.is_object()) return;
-    for (const auto& [key, value] : from.items()) {
-      if (is_point(value)) all[key] = point(value);
-    }
-  }
-  template <class T>
-  static void take(const json& from, std::map<std::string, T>& all) {
-    if (!from.is_object()) return;
-    for (const auto& [key, value] : from.items()) take(value, all.emplace(key, blank<T>()).first->second);
+  static void transfer(Archive& at, Chosen<Rows>& choice) {
+    std::string name;
+    if (at.task_ == Task::write) name = name_of(choice.rows, choice.value);
+    transfer(at, name);
+    if (const auto* const row = find_named(choice.rows, name); at.reads() && row) choice.value = row->value;
+    for (std::size_t k = 0; at.lists() && k < choice.rows.size(); ++k) at.list_name(choice.rows[k].name);
   }
   template <class Record>
   requires std::is_class_v<Record>
-  static void take(const json& from, Record& record) {
-    JsonReader own(from);
-    members(own, record);
+  static void transfer(Archive& at, Record& record) {
+    at.begin_object();
+    if (at.lists()) at.listed_.type = "record", at.listed_.record = typeid(Record).name();
+    members(at, record);
   }
+  static void transfer(Archive& at, double& value);
+  static void transfer(Archive& at, bool& value);
+  static void transfer(Archive& at, int& value);
+  static void transfer(Archive& at, std::int64_t& value);
+  static void transfer(Archive& at, std::uint64_t& value);
+  static void transfer(Archive& at, std::string& text);
+  static void transfer(Archive& at, json& as_it_is);
+  static void transfer(Archive& at, Stopped& study);
+  static void transfer(Archive& at, Status& status);
+  static void transfer(Archive& at, Count& count);
+  static void transfer(Archive& at, OrInfinite<double>& number);
+  static void transfer(Archive& at, OrInfinite<std::map<std::string, double>>& numbers);
+  static void transfer(Archive& at, OrNull<std::string>& text);
+  /// A list of numbers keeps its length: an entry that is not a number becomes NaN.
+  static void transfer(Archive& at, std::vector<double>& all);
+  /// Empty texts, and entries that are no texts, are left out.
+  static void transfer(Archive& at, std::vector<std::string>& all);
+  /// A point in JSON is a list of two entries; other entries in a list of points are skipped.
+  static void transfer(Archive& at, std::vector<std::array<double, 2>>& all);
+  static void transfer(Archive& at, std::map<std::string, std::array<double, 2>>& all);
+
+  /// Returns a value of a type before it is read: NaN for a number.
   template <class T>
-  static T blank() {
+  [[nodiscard]] static T blank() {
     if constexpr (std::is_floating_point_v<T>) return Metrics::unset;
     return T{};
   }
 
-  const json* json_;
+ private:
+  enum class Task { write, read, list };
+  /// A value whose type the function knows.
+  struct Erased {
+    void* value;
+    void (*transfer)(Archive&, void*);
+  };
+
+  Archive(Task task, const json* read) : task_(task), read_(read) {}
+  // An archive that writes or lists does not change the value, so its const may be removed.
+  template <class T>
+  static Erased erased(const T& value) {
+    return {const_cast<T*>(&value), [](Archive& at, void* one) { transfer(at, *static_cast<T*>(one)); }};
+  }
+  void member(std::string_view key, Erased value, std::string_view about);
+  [[nodiscard]] Archive opened(std::string_view key) const;
+  void close(std::string_view key, Archive own, std::string_view about);
+  void begin_list();
+  void begin_object();
+  // The number of items, or the keys, of the JSON that is read; none unless this archive reads a list, or an object.
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] std::vector<std::string> keys() const;
+  void item(std::size_t k, Erased value);
+  void item(const std::string& key, Erased value);
+  void list(std::string_view key, const Written& written);
+  template <class Shape>
+  void list(std::string_view key, const Like<Shape>& like) {
+    Shape shape{};
+    member(key, erased(shape), like.about);
+  }
+  template <class Shape>
+  void list(std::string_view key, const OneOrMore<Shape>& like) {
+    Shape one{};
+    std::map<std::string, Shape> several;
+    member(key, erased(one), like.about);
+    member(key, erased(several), std::string(like.about) + ", by name where there are several");
+  }
+  void list_member(std::string_view key, JsonMember one, std::string_view about);
+  void list_array(std::size_t size);
+  void list_items(Erased one);
+  void list_named(Erased one);
+  void list_name(std::string_view name);
+
+  Task task_;
+  const json* read_;        ///< the JSON that is read
+  json json_;               ///< the JSON that is written
+  bool is_absent_ = false;  ///< whether the JSON lacks the member
+  JsonMember listed_{};     ///< the member that is listed; its key and meaning follow those that its record gives
 };
 
-template <class Record>
-json record_json(const Record& record) {
-  JsonWriter archive;
-  members(archive, const_cast<Record&>(record));  // writing does not change the record, so the const may be removed
-  return std::move(archive).take();
+/// Returns a record, or another value, as JSON.
+template <class T>
+[[nodiscard]] json record_json(const T& record) {
+  Archive at = Archive::writer();
+  Archive::transfer(at, const_cast<T&>(record));  // writing does not change the record, so the const may be removed
+  return std::move(at).take();
+}
+
+/// Reads a record, or another value, from the JSON members that are present.
+template <class T>
+[[nodiscard]] T read_json(const json& from) {
+  T value = Archive::blank<T>();
+  Archive at = Archive::reader(from);
+  Archive::transfer(at, value);
+  return value;
 }
 
 /// Returns the results of a verb (a record) from their JSON. Throws InvalidInput if any part is missing, unknown, or not as
 /// json_of() would write it.
 template <class Record>
 [[nodiscard]] Record whole_record(const json& from) {
-  Record record = JsonReader::read<Record>(from);
+  Record record = read_json<Record>(from);
   require_same(record_json(record), from);
   return record;
 }
 
-}  // namespace softland::internal
+/// Returns the members of a record. Members that depend on values of the record are those of `record`.
+template <class Record>
+[[nodiscard]] std::vector<JsonMember> listed(const Record& record = {}) {
+  Archive at = Archive::lister();
+  Archive::transfer(at, const_cast<Record&>(record));  // a list does not change the record, so the const may be removed
+  return std::move(at).take_members();
+}
+
+}  // namespace internal
+
+}  // namespace softland

@@ -14,7 +14,6 @@
 #include "document/quantity.h"
 #include "document/svg.h"
 #include "reports/closing_record.h"
-#include "reports/member_lister.h"
 #include "reports/robustness_prose.h"
 #include "reports/study_members.h"
 #include "studies/closing/summits_at_hold.h"
@@ -164,8 +163,7 @@ ReportTable parameters_table(const ReleaseRecord& r) {
 
 }  // namespace
 
-template <class A>
-void members(A& a, OpeningFigures& figures) {
+void members(internal::Archive& a, OpeningFigures& figures) {
   a("status", figures.status, "outcome of the opening");
   a("release_time_s", figures.release_time, "last time at which the contact opens");
   a("settling_time_s", figures.settling_time, "time from which the contact point stays in the band");
@@ -174,22 +172,19 @@ void members(A& a, OpeningFigures& figures) {
   a("touches_again", figures.touches, "number of touches after the first opening");
 }
 
-template <class A>
-void members(A& a, ReleaseRecord::Run& run) {
+void members(internal::Archive& a, ReleaseRecord::Run& run) {
   a("figures", run.figures, "figures of the opening");
   a("message", run.message, "why the run is not done");
   a("drives_end_s", run.drives_end, "time from which all drives are at 0 V");
   a("waveforms", run.waveforms, "waveform of each drive from its hold level on: time [s], level [V]");
 }
 
-template <class A>
-void members(A& a, ConfirmingOpening& check) {
+void members(internal::Archive& a, ConfirmingOpening& check) {
   a("name", check.name, "what differs in the repeated simulation");
   a("figures", check.figures, "figures of the opening");
 }
 
-template <class A>
-void members(A& a, DeviceOpenings& openings) {
+void members(internal::Archive& a, DeviceOpenings& openings) {
   a("open", openings.open, "share of devices that stay open");
   a("in_band_with_drives", openings.in_band, "share of devices in the band as soon as the drives are at 0 V");
   a("settling_time_s", internal::OrInfinite{openings.settling_time}, "95th percentile of the settling time");
@@ -197,8 +192,7 @@ void members(A& a, DeviceOpenings& openings) {
   a("overshoot_m", internal::OrInfinite{openings.overshoot}, "95th percentile of the overshoot");
 }
 
-template <class A>
-void members(A& a, ReleaseRecord::Devices& devices) {
+void members(internal::Archive& a, ReleaseRecord::Devices& devices) {
   a("count", devices.count, "number of devices");
   a("spread_assumed", devices.spread_assumed, "whether the scene has no [spread] and the usual one was assumed");
   a("spread", devices.spread, "the process variation in words");
@@ -206,14 +200,12 @@ void members(A& a, ReleaseRecord::Devices& devices) {
   a("best", devices.best, "openings by the best waveform");
 }
 
-template <class A>
-void members(A& a, ReleaseRecord::Gap& course) {
+void members(internal::Archive& a, ReleaseRecord::Gap& course) {
   a("time_s", course.time, "time");
   a("tip_gap_m", course.gap, "gap of the contact");
 }
 
-template <class A>
-void members(A& a, ReleaseRecord& r) {
+void members(internal::Archive& a, ReleaseRecord& r) {
   members(a, r.origin);
   a("status", r.status, "outcome of the opening, or `interrupted`");
   a("actuator", internal::Chosen{r.actuator, actuators}, "drives that were searched");
@@ -265,11 +257,6 @@ ReleaseRecord record_of(const OpeningResult& r, const std::string& command) {
   if (std::string few = few_summits_warning(r.given.model, r.given.signals()); !few.empty())
     record.warnings.push_back(std::move(few));
   return record;
-}
-
-template <>
-std::vector<JsonMember> json_members<ReleaseRecord>() {
-  return internal::listed<ReleaseRecord>();
 }
 
 json json_of(const ReleaseRecord& record) { return internal::record_json(record); }

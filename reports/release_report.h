@@ -54,6 +54,8 @@ struct ReleaseRecord {
 };
 [[nodiscard]] ReleaseRecord record_of(const OpeningResult& release, const std::string& command);
 
+/// Names the members of the JSON.
+void members(internal::Archive& a, ReleaseRecord& record);
 [[nodiscard]] nlohmann::json json_of(const ReleaseRecord& record);
 [[nodiscard]] ReleaseRecord read_release(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const ReleaseRecord& record);

@@ -14,7 +14,6 @@
 #include "document/json_number.h"
 #include "reports/box_and_chaos_report.h"
 #include "reports/derivatives_report.h"
-#include "reports/member_lister.h"
 #include "reports/robustness_prose.h"
 #include "reports/study_members.h"
 #include "studies/closing/closed_state.h"
@@ -135,15 +134,15 @@ std::string about_prose(const RobustnessReport& report) {
 }
 
 // Writes or reads the parts of the results that belong to one figure of merit each, in the order of `keys`.
-template <class A, class Part, class Keys>
-void by_figure(A& a, std::vector<Part>& parts, const Keys& keys, std::string_view about) {
-  if constexpr (A::reads) {
+template <class Part, class Keys>
+void by_figure(internal::Archive& a, std::vector<Part>& parts, const Keys& keys, std::string_view about) {
+  if (a.reads()) {
     for (const std::string_view key : keys) {
-      if (a.at(key).is_object()) parts.emplace_back().key = key;
+      if (internal::value_at(a.from(), key).is_object()) parts.emplace_back().key = key;
     }
   }
   for (Part& part : parts) a(part.key, part, about);
-  if constexpr (A::lists) a("FIGURE", Part{}, about);
+  if (a.lists()) a("FIGURE", Part{}, about);
 }
 
 }  // namespace
@@ -161,29 +160,26 @@ struct QuantileAt {
   double probability = Metrics::unset;
   EstimatedQuantile quantile;
 };
-template <class A>
-void members(A& a, QuantileAt& one) {
+void members(Archive& a, QuantileAt& one) {
   a("probability", one.probability, "probability of the quantile");
   softland::members(a, one.quantile);
 }
 
 }  // namespace internal
 
-template <class A>
-void members(A& a, FigureStatistics& s) {
+void members(internal::Archive& a, FigureStatistics& s) {
   a("mean", s.mean, "mean over the devices that have the figure");
   a("standard_deviation", s.standard_deviation, "standard deviation over these devices");
   a("skewness", s.skewness, "skewness over these devices");
   a("devices", s.devices, "number of these devices");
   std::vector<internal::QuantileAt> quantiles;
-  for (std::size_t i = 0; !A::reads && i < s.quantiles.size(); ++i)
+  for (std::size_t i = 0; !a.reads() && i < s.quantiles.size(); ++i)
     quantiles.push_back({robustness_quantiles[i], s.quantiles[i]});
   a("quantiles", quantiles, "quantiles over all devices");
   for (std::size_t i = 0; i < std::min(quantiles.size(), s.quantiles.size()); ++i) s.quantiles[i] = quantiles[i].quantile;
 }
 
-template <class A>
-void members(A& a, Calibration& c) {
+void members(internal::Archive& a, Calibration& c) {
   a("Vdp_error", internal::OrNull{c.pull_in_error}, "relative error of the measured Vdp of each device");
   a("frequency_error", internal::OrNull{c.frequency_error}, "relative error of the measured frequency");
   a("piezo_error", internal::OrNull{c.piezo_error}, "relative error of the measured deflection by the piezo");
@@ -191,16 +187,14 @@ void members(A& a, Calibration& c) {
   a("classes", internal::OrNull{c.classes}, "number of classes into which devices are sorted");
 }
 
-template <class A>
-void members(A& a, MeasuredUnits::Class& c) {
+void members(internal::Archive& a, MeasuredUnits::Class& c) {
   a("volts_factor", c.centre.volts, "factor of the voltages of the class");
   a("time_factor", c.centre.time, "factor of its times");
   a("piezo_factor", c.centre.piezo, "factor of its piezo voltages");
   a("share", c.share, "share of the devices in the class");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord::Varied& v) {
+void members(internal::Archive& a, RobustnessRecord::Varied& v) {
   a("name", v.name, "name of the varied quantity");
   a("keys", v.keys, "keys of the scene that vary with it");
   a("distribution", v.distribution, "kind of distribution");
@@ -210,8 +204,7 @@ void members(A& a, RobustnessRecord::Varied& v) {
   a("standard_deviation", v.deviation, "standard deviation");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord::Device& device) {
+void members(internal::Archive& a, RobustnessRecord::Device& device) {
   a("device", device.number, "number of the device");
   a("values", device.values, "its varied quantities [SI unit, or factor]");
   a("status", device.status, "outcome of its closing");
@@ -219,8 +212,7 @@ void members(A& a, RobustnessRecord::Device& device) {
   if (a.has(!device.failure.empty())) a("failure", device.failure, "why the device was not simulated to the end");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord::Drive& d) {
+void members(internal::Archive& a, RobustnessRecord::Drive& d) {
   a("name", d.name, "name of the set of waveforms");
   a("closed_state", internal::OrNull{d.closed_state}, "closed equilibrium of the nominal design");
   a("calibration", d.calibration, "measurements that scale the waveforms of each device; null: not measured");
@@ -233,52 +225,46 @@ void members(A& a, RobustnessRecord::Drive& d) {
       "figures",
       [&](auto& figures) {
         for (const Figure& f : device_figures) {
-          if (A::lists || !figures.has(f.asked == nullptr || d.figures[f].devices > 0)) continue;
+          if (a.lists() || !figures.has(f.asked == nullptr || d.figures[f].devices > 0)) continue;
           figures(f.key, d.figures[f], "statistics of the figure");
         }
-        if constexpr (A::lists) figures("FIGURE", FigureStatistics{}, "statistics of the figure");
+        if (a.lists()) figures("FIGURE", FigureStatistics{}, "statistics of the figure");
       },
       "figures over the devices");
   a("failures", d.failures, "number of devices that do not close, by reason");
   a("worst", d.worst, "worst devices");
 }
 
-template <class A>
-void members(A& a, SobolIndex& index) {
+void members(internal::Archive& a, SobolIndex& index) {
   a("value", index.value, "the index");
   a.pair("interval", index.interval.low, index.interval.high, "confidence interval of the index");
   a("above_zero", index.above_zero, "whether the interval is above zero");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord::Sensitive::Indices& indices) {
+void members(internal::Archive& a, RobustnessRecord::Sensitive::Indices& indices) {
   a("first_order", indices.first_order, "Sobol' index of first order");
   a("total", indices.total, "total Sobol' index");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord::Sensitive& s) {
+void members(internal::Archive& a, RobustnessRecord::Sensitive& s) {
   a("rows", s.rows, "number of rows of the estimate");
   a("failed_rows", s.failed_rows, "number of rows with a failed simulation");
   a("variables", s.variables, "indices by varied quantity");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord::Derived::Variable& v) {
+void members(internal::Archive& a, RobustnessRecord::Derived::Variable& v) {
   a("nominal", v.nominal, "value of the nominal design");
   a("standard_deviation", v.deviation, "standard deviation over the devices");
   if (a.has(!v.why_none.empty())) a("why_none", v.why_none, "why there is no derivative by it");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord::Derived::Slope& slope) {
+void members(internal::Archive& a, RobustnessRecord::Derived::Slope& slope) {
   a("derivative", slope.derivative, "derivative of the figure [SI units]");
   a("relative", slope.relative, "relative change of the figure divided by that of the quantity");
   a("per_standard_deviation", slope.step, "change of the figure for one standard deviation of the quantity");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord::Derived::Of& figure) {
+void members(internal::Archive& a, RobustnessRecord::Derived::Of& figure) {
   a("nominal", figure.nominal, "figure of the nominal design");
   a("by", figure.by, "derivatives by varied quantity");
   a("standard_deviation", figure.deviation, "standard deviation that the derivatives predict");
@@ -287,8 +273,7 @@ void members(A& a, RobustnessRecord::Derived::Of& figure) {
   if (a.has(!figure.why_none.empty())) a("why_none", figure.why_none, "why there is no derivative");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord::Derived& d) {
+void members(internal::Archive& a, RobustnessRecord::Derived& d) {
   a("drive", d.drive, "set of waveforms");
   a("grazes", d.grazes, "whether a touch nearly appears or disappears, so that derivatives hold for small changes only");
   a("slowest_crossing", d.grazing, "smallest speed through the contact plane, as a share of that at first contact");
@@ -304,23 +289,20 @@ void members(A& a, RobustnessRecord::Derived& d) {
   if (a.has(!d.why_none.empty())) a("why_none", d.why_none, "why there are no derivatives");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord::BoxAndChaosRecord::InBox& device) {
+void members(internal::Archive& a, RobustnessRecord::BoxAndChaosRecord::InBox& device) {
   a("value", device.figure, "the figure");
   a("values", device.values, "varied quantities of the device [SI unit, or factor]");
   a("status", device.status, "outcome of its closing");
   if (a.has(!device.failure.empty())) a("failure", device.failure, "why the device was not simulated to the end");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord::BoxAndChaosRecord::Range& range) {
+void members(internal::Archive& a, RobustnessRecord::BoxAndChaosRecord::Range& range) {
   a("least", range.least, "device with the least figure in the box");
   a("most", range.most, "device with the largest figure in the box");
   a.pair("sampled", range.of_sample.low, range.of_sample.high, "least and largest figure of the sampled devices inside");
 }
 
-template <class A>
-void members(A& a, FigureChaos& c) {
+void members(internal::Archive& a, FigureChaos& c) {
   a("devices", c.fitted, "number of devices to which the polynomials are fitted");
   a("other_devices", c.unseen, "number of devices on which they are tested");
   a("degree", c.degree, "degree of the polynomials");
@@ -332,8 +314,7 @@ void members(A& a, FigureChaos& c) {
   a("quantile_95", c.quantile_95, "95th percentile of the figure");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord::BoxAndChaosRecord& ways) {
+void members(internal::Archive& a, RobustnessRecord::BoxAndChaosRecord& ways) {
   a("drive", ways.drive, "set of waveforms");
   a.object(
       "box",
@@ -355,8 +336,7 @@ void members(A& a, RobustnessRecord::BoxAndChaosRecord& ways) {
   if (a.has(!ways.why_none.empty())) a("why_none", ways.why_none, "why there are no such results");
 }
 
-template <class A>
-void members(A& a, RobustnessRecord& r) {
+void members(internal::Archive& a, RobustnessRecord& r) {
   members(a, r.origin);
   a("status", internal::Stopped{r.interrupted}, "`done` or `interrupted`");
   a("devices", r.devices, "number of simulated devices");
@@ -434,11 +414,6 @@ RobustnessRecord record_of(const RobustnessReport& report) {
   for (const DriveRobustness& d : found.by_knowledge) record.by_knowledge.push_back(drive_of(report, ensemble, d));
   if (ways) record.box_and_chaos = internal::record_of(*ways, found.drives.back(), nominal);
   return record;
-}
-
-template <>
-std::vector<JsonMember> json_members<RobustnessRecord>() {
-  return internal::listed<RobustnessRecord>();
 }
 
 json json_of(const RobustnessRecord& record) { return internal::record_json(record); }

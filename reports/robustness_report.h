@@ -144,6 +144,8 @@ struct RobustnessRecord {
   std::vector<std::string> warnings;
 };
 [[nodiscard]] RobustnessRecord record_of(const RobustnessReport& report);
+/// Names the members of the JSON.
+void members(internal::Archive& a, RobustnessRecord& record);
 [[nodiscard]] nlohmann::json json_of(const RobustnessRecord& record);
 [[nodiscard]] RobustnessRecord read_robustness(const nlohmann::json& from);
 /// Returns the report without diagrams: the text for a terminal, and the worst devices.

@@ -11,7 +11,6 @@
 
 #include "document/quantity.h"
 #include "reports/figure_text.h"
-#include "reports/member_lister.h"
 #include "reports/study_members.h"
 #include "sampling/statistics.h"
 
@@ -108,16 +107,10 @@ SeedsSummary internal::seeds_summary(const SeedsFindings& seeds) {
   return all;
 }
 
-template <class A>
-void members(A& a, SeedsRecord& record) {
+void members(internal::Archive& a, SeedsRecord& record) {
   members(a, record.origin);
   a.derived("status", std::string("interrupted"), "`interrupted`: a complete study has the JSON of its best search");
   a("seeds", record.seeds, "searches so far");
-}
-
-template <>
-std::vector<JsonMember> json_members<SeedsRecord>() {
-  return internal::listed<SeedsRecord>();
 }
 
 json json_of(const SeedsRecord& record) { return internal::record_json(record); }

@@ -25,6 +25,8 @@ struct SeedsRecord {
   Origin origin;
   SeedsFindings seeds;
 };
+/// Names the members of the JSON.
+void members(internal::Archive& a, SeedsRecord& record);
 [[nodiscard]] nlohmann::json json_of(const SeedsRecord& record);
 [[nodiscard]] SeedsRecord read_seeds(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const SeedsRecord& record);

@@ -16,12 +16,11 @@ namespace softland {
 
 /// Lists status and figures of merit of a run as members for JSON, except figures of the drive waveforms themselves, such as
 /// the peak voltage.
-template <class A>
-void members(A& a, Metrics& metrics) {
+inline void members(internal::Archive& a, Metrics& metrics) {
   FigureValues values(metrics);
   a.figures(values, internal::figure_of_no_drive);
   a("status", metrics.status, "outcome of the run");
-  if constexpr (!A::reads) return;
+  if (!a.reads()) return;
   metrics.asked = values.asked;
   for (const Figure& figure : all_figures) {
     const double value = values[figure];
@@ -33,22 +32,19 @@ void members(A& a, Metrics& metrics) {
   }
 }
 
-template <class A>
-void members(A& a, NamedNumber& number) {
+inline void members(internal::Archive& a, NamedNumber& number) {
   a("name", number.name, "name of the number");
   a("unit", number.unit, "its unit");
   a("value", number.value, "its value");
 }
 
-template <class A>
-void members(A& a, Yield& yield) {
+inline void members(internal::Archive& a, Yield& yield) {
   a("devices", yield.devices, "number of devices");
   a("share", yield.value, "share of all devices");
   a.pair("interval", yield.interval.low, yield.interval.high, "95 % confidence interval of the share");
 }
 
-template <class A>
-void members(A& a, EstimatedQuantile& quantile) {
+inline void members(internal::Archive& a, EstimatedQuantile& quantile) {
   a("value", internal::OrInfinite{quantile.value}, "the quantile");
   a.pair("interval", quantile.interval.low, quantile.interval.high, "95 % confidence interval of the quantile");
 }

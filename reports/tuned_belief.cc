@@ -46,8 +46,7 @@ json belief_json(const TunedBelief& belief) {
 }
 
 TunedBelief tuned_belief(const json& written) {
-  const internal::JsonReader tuning(written);
-  return read_belief(internal::JsonReader(tuning.at("belief")).at("coordinates"));
+  return read_belief(internal::value_at(internal::value_at(written, "belief"), "coordinates"));
 }
 
 }  // namespace softland

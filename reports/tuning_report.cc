@@ -4,7 +4,6 @@
 #include <array>
 
 #include "base/require.h"
-#include "reports/member_lister.h"
 #include "reports/study_members.h"
 #include "reports/tuning_lines.h"
 #include "waveforms/export.h"
@@ -88,8 +87,7 @@ TuningReport tuning_report(const Tuner& tuner, const std::vector<TunedClosing>& 
 
 // The JSON of a ContactRecord, as record_json() writes it.
 struct ContactRecordJson {};
-template <class A>
-void members(A& a, ContactRecordJson&) {
+void members(internal::Archive& a, ContactRecordJson&) {
   a("shot", 0, "number of the shot");
   a("edges_s", std::vector<std::array<double, 2>>{}, "time of each edge, and 1 (closes) or 0 (opens)");
   a("closing_time_s", 0.0, "first contact time, instead of the edges");
@@ -100,20 +98,17 @@ void members(A& a, ContactRecordJson&) {
 
 // The JSON of a TunedBelief, as belief_json() writes it.
 struct NormalBeliefJson {};
-template <class A>
-void members(A& a, NormalBeliefJson&) {
+void members(internal::Archive& a, NormalBeliefJson&) {
   a("mean", std::vector<double>{}, "mean of each coordinate");
   a("covariance", std::vector<std::vector<double>>{}, "covariance of the coordinates");
 }
 struct TunedBeliefJson {};
-template <class A>
-void members(A& a, TunedBeliefJson&) {
+void members(internal::Archive& a, TunedBeliefJson&) {
   a("prior", NormalBeliefJson{}, "before the records");
   a("posterior", NormalBeliefJson{}, "after the records");
 }
 
-template <class A>
-void members(A& a, PredictedRecord& predicted) {
+void members(internal::Archive& a, PredictedRecord& predicted) {
   a("touches", predicted.touches, "share of the believed devices that touch");
   a("touch_median_s", predicted.touch_median, "median of the first contact time");
   a("touch_low_s", predicted.touch_low, "2.5th percentile of the first contact time");
@@ -123,8 +118,7 @@ void members(A& a, PredictedRecord& predicted) {
   a("rebound_95_m", predicted.rebound_high, "95th percentile of the highest rebound");
 }
 
-template <class A>
-void members(A& a, TuningReport::Shot& shot) {
+void members(internal::Archive& a, TuningReport::Shot& shot) {
   a("shot", shot.number, "number of the shot");
   a("waveforms", shot.waveforms, "waveform of each drive: time [s], voltage [V]");
   a("hold_s", shot.hold_time, "time for which the last levels are held");
@@ -132,8 +126,7 @@ void members(A& a, TuningReport::Shot& shot) {
   a("predicted", shot.predicted, "prediction for the closing");
 }
 
-template <class A>
-void members(A& a, TuningReport::Closing& closing) {
+void members(internal::Archive& a, TuningReport::Closing& closing) {
   members(a, closing.shot);
   a.custom(
       "record", closing.record, [&](const ContactRecord& record) { return record_json(closing.shot.number, record); },
@@ -142,8 +135,7 @@ void members(A& a, TuningReport::Closing& closing) {
   a.derived("bounce_free", is_bounce_free(closing.record), "whether the record has no opening");
 }
 
-template <class A>
-void members(A& a, BelievedQuantity& quantity) {
+void members(internal::Archive& a, BelievedQuantity& quantity) {
   a("name", quantity.name, "name of the quantity");
   a("unit", quantity.unit, "its unit; empty for a factor");
   a("prior_mean", quantity.prior_mean, "mean before the records");
@@ -152,15 +144,13 @@ void members(A& a, BelievedQuantity& quantity) {
   a("deviation", quantity.deviation, "standard deviation after the records");
 }
 
-template <class A>
-void members(A& a, TouchMisfit& misfit) {
+void members(internal::Archive& a, TouchMisfit& misfit) {
   a("least", misfit.least, "misfit of the device that fits the records best");
   a("bound", misfit.bound, "misfit that one in a thousand devices of [spread] exceeds");
   a("records", misfit.records, "number of records in the misfit");
 }
 
-template <class A>
-void members(A& a, BeliefSummary& belief) {
+void members(internal::Archive& a, BeliefSummary& belief) {
   a("quantities", belief.quantities, "quantities of the device");
   a("gap_ratio", internal::OrNull{belief.gap_ratio}, "ratio of contact gap to electrode gap, relative to the scene");
   a("effective_devices", belief.effective_devices, "effective number of devices in the belief");
@@ -170,8 +160,7 @@ void members(A& a, BeliefSummary& belief) {
            internal::Like<TunedBeliefJson>{"belief for tuning another device, in coordinates of [spread]"});
 }
 
-template <class A>
-void members(A& a, TuningReport& report) {
+void members(internal::Archive& a, TuningReport& report) {
   members(a, report.origin);
   a("status", internal::Chosen{report.end, tuning_ends}, "how the tuning ended");
   a.derived("title", title_of(report.origin), "title of the scene");
@@ -195,11 +184,6 @@ void members(A& a, TuningReport& report) {
   a("seed", report.seed, "seed of the believed devices");
   a("tolerance", report.tolerance, "relative tolerance of the integrator");
   if (a.has(!report.setting.is_null())) a("tuning", report.setting, "settings that a continued tuning must share");
-}
-
-template <>
-std::vector<JsonMember> json_members<TuningReport>() {
-  return internal::listed<TuningReport>();
 }
 
 json json_of(const TuningReport& report) { return internal::record_json(report); }

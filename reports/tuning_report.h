@@ -75,6 +75,8 @@ struct TuningReport {
 [[nodiscard]] TuningReport tuning_report(const Tuner& tuner, const std::vector<TunedClosing>& closings,
                                          const TunerOptions& options, TuningEnd end, const std::string& command);
 
+/// Names the members of the JSON.
+void members(internal::Archive& a, TuningReport& record);
 [[nodiscard]] nlohmann::json json_of(const TuningReport& report);
 [[nodiscard]] TuningReport read_tuning(const nlohmann::json& from);
 [[nodiscard]] nlohmann::json belief_json(const TunedBelief& belief);

@@ -135,7 +135,7 @@ int leave(Common c, const std::filesystem::path& record, std::vector<verbs::Outc
 // Returns the path of the database file that the JSON of an exploration names. A relative path starts from the folder of the
 // JSON, or else from the current folder.
 std::string store_of(const nlohmann::json& j, const std::filesystem::path& record) {
-  const std::filesystem::path named = internal::JsonReader::read<std::string>(internal::JsonReader(j).at("store"));
+  const std::filesystem::path named = internal::read_json<std::string>(internal::value_at(j, "store"));
   for (const std::filesystem::path& place : {record.parent_path() / named, named}) {
     if (!named.empty() && is_store(place.string())) return place.string();
   }
@@ -146,10 +146,9 @@ std::string store_of(const nlohmann::json& j, const std::filesystem::path& recor
 // Returns the figures of merit that span the Pareto front in the JSON, in the form of the option --pareto.
 std::string aims_of(const nlohmann::json& j) {
   std::string aims;
-  for (const nlohmann::json& one : internal::JsonReader(internal::JsonReader(j).at("pareto")).at("aims")) {
-    const internal::JsonReader aim(one);
-    aims += (aims.empty() ? "" : ",") + std::string(aim.at("better") == "large" ? largest_mark : "") +
-            internal::JsonReader::read<std::string>(aim.at("figure"));
+  for (const nlohmann::json& one : internal::value_at(internal::value_at(j, "pareto"), "aims")) {
+    aims += (aims.empty() ? "" : ",") + std::string(internal::value_at(one, "better") == "large" ? largest_mark : "") +
+            internal::read_json<std::string>(internal::value_at(one, "figure"));
   }
   return aims;
 }

@@ -26,7 +26,7 @@
 #include "objectives/figures.h"
 #include "reports/accuracy_report.h"
 #include "reports/check_report.h"
-#include "reports/closing_record.h"
+#include "reports/closing_members.h"
 #include "reports/cycle_report.h"
 #include "reports/effects_report.h"
 #include "reports/fit_report.h"
@@ -35,7 +35,7 @@
 #include "reports/mode_table_report.h"
 #include "reports/origin.h"
 #include "reports/pull_in_report.h"
-#include "reports/record_members.h"
+#include "reports/record.h"
 #include "reports/release_report.h"
 #include "reports/robustness_report.h"
 #include "reports/seeds_report.h"
@@ -560,13 +560,49 @@ const Members& recording_members() {
   return all;
 }
 
+// The members that the JSON of a closing has beside those of ClosingRecord.
+const Members& closing_extras() {
+  static const Members all{{.key = "collapse_time_s", .type = "number", .about = "time at which the beam touched the electrode"},
+                           {.key = "static_deflection_m", .type = "number", .about = "that of `metrics`"},
+                           {.key = "capacitance_F", .type = "number", .about = "that of `metrics`"}};
+  return all;
+}
+
+const Members& search_extras() {
+  static const Members all{{.key = "confirmed", .type = "true or false", .about = "whether the repeated simulations agree"},
+                           {.key = "worst",
+                            .type = "record",
+                            .about = "repeated simulation that disagrees most",
+                            .members = {{.key = "name", .type = "text", .about = "what differs in it"},
+                                        {.key = "figure", .type = "text", .about = "key of the figure that disagrees"},
+                                        {.key = "value", .type = "number", .about = "value of this figure"}}}};
+  return all;
+}
+
+// Returns the members of a record, and further ones.
+template <class Record>
+Members listed_with(const Record& record, const Members& more) {
+  Members all = internal::listed(record);
+  internal::add_members(all, more);
+  return all;
+}
+
 struct JsonSection {
   std::string title, words;
   Members members;
 };
 
 void print_json() {
-  const Members origin = json_members<Origin>(), closing = json_members<ClosingRecord>();
+  ClosingRecord closing_record, search_record;
+  for (ClosingRecord* const one : {&closing_record, &search_record}) one->best.figures.emplace(), one->certificate.emplace();
+  search_record.search.emplace().devices.emplace();
+  AccuracyRecord accuracy;
+  accuracy.found.rows.emplace_back();
+  EffectsRecord effects;
+  effects.found.list.push_back({.section = "gas", .in_scene = true});
+  LimitRecord limit;
+  limit.landed.emplace();
+  const Members origin = internal::listed<Origin>(), closing = listed_with(closing_record, closing_extras());
   const auto of_verb = [&](const Members& members) { return besides(members, origin); };
   const std::vector<JsonSection> sections{
       {"Every verb",
@@ -574,20 +610,22 @@ void print_json() {
        origin},
       {"simulate", "The JSON of `--json` lacks `best`, `curves` and `scene_toml`.", of_verb(closing)},
       {"optimize", "These members come beside those of [simulate](#simulate). The JSON of `--json` lacks `curves` and `search`.",
-       besides(of_verb(json_members<SearchRecord>()), closing)},
-      {"optimize --seeds", "This is the JSON of interrupted searches.", of_verb(json_members<SeedsRecord>())},
-      {"check", "", of_verb(json_members<CheckRecord>())},
-      {"pull-in", "The members of a single electrode are repeated at the top.", of_verb(json_members<PullInsRecord>())},
-      {"modes", "With `--from` the JSON has the members of the file.", of_verb(json_members<ModesRecord>())},
-      {"effects", "", of_verb(json_members<EffectsRecord>())},
-      {"accuracy", "", of_verb(json_members<AccuracyRecord>())},
-      {"limit", "", of_verb(json_members<LimitRecord>())},
-      {"release", "", of_verb(json_members<ReleaseRecord>())},
-      {"cycle", "", of_verb(json_members<CycleRecord>())},
-      {"robustness", "", of_verb(json_members<RobustnessRecord>())},
-      {"calibrate", "", of_verb(json_members<MeasurementsRecord>())},
-      {"fit", "", of_verb(json_members<FitRecord>())},
-      {"tune", "", of_verb(json_members<TuningReport>())},
+       besides(of_verb(listed_with(search_record, search_extras())), closing)},
+      {"optimize --seeds", "This is the JSON of interrupted searches.", of_verb(internal::listed<SeedsRecord>())},
+      {"check", "", of_verb(internal::listed<CheckRecord>())},
+      {"pull-in", "The members of a single electrode are repeated at the top.",
+       of_verb(listed_with(PullInsRecord{}, internal::listed(PullInsRecord{.electrodes = {{"main", {}}}})))},
+      {"modes", "With `--from` the JSON has the members of the file.",
+       of_verb(listed_with(ModesRecord{}, internal::listed(ModesRecord{.file = ModesRecord::File{}})))},
+      {"effects", "", of_verb(internal::listed(effects))},
+      {"accuracy", "", of_verb(internal::listed(accuracy))},
+      {"limit", "", of_verb(internal::listed(limit))},
+      {"release", "", of_verb(internal::listed<ReleaseRecord>())},
+      {"cycle", "", of_verb(internal::listed<CycleRecord>())},
+      {"robustness", "", of_verb(internal::listed<RobustnessRecord>())},
+      {"calibrate", "", of_verb(internal::listed<MeasurementsRecord>())},
+      {"fit", "", of_verb(internal::listed<FitRecord>())},
+      {"tune", "", of_verb(internal::listed<TuningReport>())},
       {"explore", "The file exploration.json of `report` has a part of these members.", explored_members()},
       {"status", "", status_members()},
       {"read", "", recording_members()}};
