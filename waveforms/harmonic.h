@@ -54,12 +54,12 @@ namespace internal {
 
 /// Returns the envelope of the sine (rise from 0 to 1, constant, fall to 0) as a piecewise linear function of time.
 template <class P>
-[[nodiscard]] std::vector<Stretch<P>> envelope(const HarmonicOf<P>& h) {
+[[nodiscard]] std::vector<StraightPart<P>> envelope(const HarmonicOf<P>& h) {
   const bool ends = decided(h.end < std::numeric_limits<double>::infinity());
   P faded_in = h.start + h.fade;
   const P fading_out = ends ? h.end - h.fade : h.end;
   if (ends && decided(h.fade > 0) && coincide(faded_in, fading_out)) faded_in = fading_out;
-  std::vector<Stretch<P>> line;
+  std::vector<StraightPart<P>> line;
   if (decided(h.start > 0)) line.push_back({.begin = P(0)});
   if (decided(faded_in > h.start)) line.push_back({.begin = h.start, .value = P(0), .slope = P(1) / (faded_in - h.start)});
   if (decided(faded_in < fading_out)) line.push_back({.begin = faded_in, .value = P(1)});
@@ -75,12 +75,12 @@ template <class P>
 /// Returns the signal pieces of a valid harmonic waveform; its base rises from `before` [V].
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const HarmonicOf<P>& h, const P& before = P(0)) {
-  const std::vector<internal::Stretch<P>> envelope = internal::envelope(h);
+  const std::vector<internal::StraightPart<P>> envelope = internal::envelope(h);
   std::vector<P> begins;
-  for (const internal::Stretch<P>& stretch : envelope) begins.push_back(stretch.begin);
+  for (const internal::StraightPart<P>& part : envelope) begins.push_back(part.begin);
   // Compute the ramp of the base in volts with one division. A slope that is rounded twice would not end exactly on the base
   // voltage, and the difference would count as a jump.
-  std::vector<internal::Stretch<P>> straight_line{{.begin = P(0), .value = h.base}};
+  std::vector<internal::StraightPart<P>> straight_line{{.begin = P(0), .value = h.base}};
   if (!(internal::vanishes(h.base) && internal::vanishes(before)) && internal::decided(h.rise_time > 0)) {
     const auto same = std::find_if(begins.begin(), begins.end(), [&](const P& t) { return internal::coincide(t, h.rise_time); });
     const P risen = same == begins.end() ? h.rise_time : *same;
@@ -90,8 +90,8 @@ template <class P>
   }
   Pieces<P> all;
   for (const P& begin : begins) {
-    const internal::Stretch<P>& straight = internal::stretch_at(straight_line, begin);
-    const internal::Stretch<P>& swing = internal::stretch_at(envelope, begin);
+    const internal::StraightPart<P>& straight = internal::part_at(straight_line, begin);
+    const internal::StraightPart<P>& swing = internal::part_at(envelope, begin);
     all.push_back({.begin = begin, .value = straight.at(begin), .slope = straight.slope});
     // Leave out the sine where its envelope is 0.
     if (!internal::decided(swing.value > 0) && !internal::decided(swing.slope > 0)) continue;

@@ -194,7 +194,7 @@ template <class P>
 
 /// One straight part of a piecewise linear function of time. It ends where the next part begins; the last one has no end.
 template <class P>
-struct Stretch {
+struct StraightPart {
   P begin = 0;  ///< time at which the straight part begins [s]
   P value = 0;  ///< value of the piecewise linear function at begin
   P slope = 0;  ///< slope of the function on this part [1/s]
@@ -204,7 +204,7 @@ struct Stretch {
 
 /// Returns the straight part of the piecewise linear function `line` at `time`; at a boundary the later part.
 template <class P>
-[[nodiscard]] const Stretch<P>& stretch_at(const std::vector<Stretch<P>>& line, const P& time) {
+[[nodiscard]] const StraightPart<P>& part_at(const std::vector<StraightPart<P>>& line, const P& time) {
   std::size_t found = 0;
   while (found + 1 < line.size() && !decided(time < line[found + 1].begin)) ++found;
   return line[found];

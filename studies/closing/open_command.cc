@@ -12,7 +12,7 @@ namespace {
 
 constexpr int most_samples = 4000;  // largest number of samples of a curved piece (sine or decay) of a drive signal
 constexpr int halvings = 40;
-constexpr double tail = 40;  // number of time constants after which an exponential decay of a signal has ended
+constexpr double decay_end = 40;  // number of time constants after which an exponential decay of a signal has ended
 
 enum class OfJump { before, after };  // side of a jump of a drive's signal
 
@@ -36,13 +36,13 @@ int parts_of(const Signal& signal, double begin, double end) {
 
 // Returns the instants at which the levels of the drives are checked, in order of time: both sides of every breakpoint, and
 // samples between the breakpoints of curved pieces.
-std::vector<Instant> instants(const std::vector<Signal>& signals) {
+std::vector<Instant> checked_instants(const std::vector<Signal>& signals) {
   std::vector<double> stops;
   double end = 0;
   for (const Signal& s : signals) {
     std::ranges::copy(s.breakpoints(), std::back_inserter(stops));
     const SignalPiece& last = s.pieces().back();
-    for (const SignalTerm& term : last.terms) end = std::max(end, last.begin + tail / term.decay);
+    for (const SignalTerm& term : last.terms) end = std::max(end, last.begin + decay_end / term.decay);
   }
   if (std::isfinite(end)) stops.push_back(end);
   std::ranges::sort(stops);
@@ -120,7 +120,7 @@ double begin_of_fall(const Switch& model, std::size_t electrode, const Signal& s
 // Returns the time from which on the drives no longer keep the switch closed [s].
 std::optional<double> loses_hold(const Switch& model, const std::vector<Signal>& signals, StartState start) {
   Holding holding(model, signals);
-  const std::vector<Instant> all = instants(signals);
+  const std::vector<Instant> all = checked_instants(signals);
   std::optional<std::size_t> held;
   if (start == StartState::closed) {
     for (std::size_t i = 0; i < all.size() && holding.at(all[i]); ++i) held = i;

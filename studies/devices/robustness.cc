@@ -53,7 +53,7 @@ void summarise(DriveRobustness& drive) {
   drive.closing = yield_of(count([](const DeviceOutcome& o) { return o.closed(); }), all.size());
   drive.collapsed =
       yield_of(count([](const DeviceOutcome& o) { return o.metrics.status == Status::collapsed_onto_electrode; }), all.size());
-  drive.bounce_free = yield_of(count(is_bounce_free), all.size());
+  drive.bounce_free = yield_of(count([](const DeviceOutcome& o) { return is_bounce_free(o); }), all.size());
   drive.worst.resize(all.size());
   std::iota(drive.worst.begin(), drive.worst.end(), std::size_t{0});
   const auto height = [&](std::size_t k) { return all[k].of(figure_of(&Metrics::major_bounce_height)); };

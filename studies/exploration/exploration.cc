@@ -18,6 +18,7 @@
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/certify.h"
 #include "studies/devices/robustness.h"
+#include "studies/search/figure_columns.h"
 #include "studies/search/optimize.h"
 #include "studies/search/search_request.h"
 #include "studies/search/search_space.h"
@@ -109,8 +110,6 @@ std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const Pre
   }
   return all;
 }
-
-double finite(double value) { return std::isfinite(value) ? value : Metrics::unset; }
 
 /// Removes the file name from a message, since the scene of a point is not in a file of the user.
 std::string without_file(std::string_view message) {
@@ -372,10 +371,11 @@ PointRow Exploration::simulated(const SceneFile& scene, int jobs, const Progress
   const bool certified = plan_.options().contains("certify");
   const Closing closing = certified ? certify(p, progress, jobs) : simulate(p, true, progress);
   PointRow row{.status = std::string(to_string(closing.metrics.status)), .reason = closing.trajectory.message, .figures = {}};
-  for (const Figure& figure : asked_among(all_figures, asked_)) row.figures.push_back(finite(figure.value(closing.metrics)));
+  for (const Figure& figure : asked_among(all_figures, asked_))
+    row.figures.push_back(stored_value(figure.value(closing.metrics)));
   if (!certified) return row;
   for (const Figure& figure : asked_among(all_figures, asked_)) {
-    if (figure.has_error()) row.figures.push_back(finite(closing.errors[figure]));
+    if (figure.has_error()) row.figures.push_back(stored_value(closing.errors[figure]));
   }
   return row;
 }
@@ -393,11 +393,11 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Progress& progress
     if (status != Status::done) row.status = to_string(status);
     // The drive value of a dispersion force is the factor on the force less one; the row has the factor.
     const double offset = is_electrode ? 0 : 1;
-    row.figures.push_back(finite(offset + found.statically.voltage));
-    row.figures.push_back(finite(offset + found.dynamically.voltage));
+    row.figures.push_back(stored_value(offset + found.statically.voltage));
+    row.figures.push_back(stored_value(offset + found.dynamically.voltage));
     if (!is_electrode) continue;
-    row.figures.push_back(finite(release_voltage(p.model, k, bias)));
-    row.figures.push_back(finite(found.statically.deflection));
+    row.figures.push_back(stored_value(release_voltage(p.model, k, bias)));
+    row.figures.push_back(stored_value(found.statically.deflection));
   }
   return row;
 }
@@ -409,7 +409,7 @@ PointRow Exploration::recorded(const SceneFile& scene, int jobs, const Progress&
   PointRow row{.status = record.status, .reason = {}, .figures = std::vector<double>(figures_.size(), Metrics::unset)};
   for (const auto& [key, value] : record.numbers) {
     const auto column = std::ranges::find(figures_, figure_of_key(key).quantity, &PointFigure::quantity);
-    if (column != figures_.end()) row.figures[static_cast<std::size_t>(column - figures_.begin())] = finite(value);
+    if (column != figures_.end()) row.figures[static_cast<std::size_t>(column - figures_.begin())] = stored_value(value);
   }
   return row;
 }
@@ -426,7 +426,7 @@ PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Progres
   for (const Figure& figure : asked_among(device_figures, asked_)) {
     for (const double p : shown_quantiles) {
       const auto at = std::find(robustness_quantiles.begin(), robustness_quantiles.end(), p) - robustness_quantiles.begin();
-      row.figures.push_back(finite(own.figures[figure].quantiles.at(static_cast<std::size_t>(at)).value));
+      row.figures.push_back(stored_value(own.figures[figure].quantiles.at(static_cast<std::size_t>(at)).value));
     }
   }
   return row;
@@ -446,13 +446,13 @@ PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Progress
   PointRow row{.status = {}, .reason = {}, .figures = {}};
   const Metrics figures = found.best ? found.best->metrics : Metrics{};
   for (const Figure& figure : asked_among(all_figures, asked_))
-    row.figures.push_back(found.best ? finite(figure.value(figures)) : Metrics::unset);
+    row.figures.push_back(found.best ? stored_value(figure.value(figures)) : Metrics::unset);
   row.figures.push_back(found.goal_met ? 1 : 0);
-  row.figures.push_back(finite(found.best_cost));
-  row.figures.push_back(finite(found.baseline_cost));
-  for (const Figure& figure : step_figures) row.figures.push_back(finite(figure.value(found.baseline.metrics)));
+  row.figures.push_back(stored_value(found.best_cost));
+  row.figures.push_back(stored_value(found.baseline_cost));
+  for (const Figure& figure : step_figures) row.figures.push_back(stored_value(figure.value(found.baseline.metrics)));
   row.figures.push_back(static_cast<double>(found.search.evaluations));
-  for (const std::string& name : parameters_) row.figures.push_back(finite(found.parameter(name)));
+  for (const std::string& name : parameters_) row.figures.push_back(stored_value(found.parameter(name)));
   if (found.best_scene) {
     row.scene = found.best_scene->scene.file.text();
     row.waveforms = lines_of(*found.best_scene);

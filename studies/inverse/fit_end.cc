@@ -17,7 +17,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double quantile_95 = 1.959963984540054;
+constexpr double half_width_95 = 1.959963984540054;
 
 }  // namespace
 
@@ -108,8 +108,8 @@ void EndOfFit::add_unknowns() {
     one.scale = std::abs(unit) * p.scale;
     one.value = unit * (p.mean + p.scale * z_[static_cast<Index>(i)]);
     one.standard_error = one.scale * fit_.estimate.deviation(i);
-    one.low = one.value - quantile_95 * one.standard_error;
-    one.high = one.value + quantile_95 * one.standard_error;
+    one.low = one.value - half_width_95 * one.standard_error;
+    one.high = one.value + half_width_95 * one.standard_error;
     if (p.has_prior) one.prior_mean = unit * p.mean, one.prior_deviation = one.scale;
     fit_.unknowns.push_back(std::move(one));
   }

@@ -20,7 +20,7 @@ namespace softland {
 namespace {
 
 // Throws InvalidInput if the switch has no contact: a laboratory could not record the closing.
-void require_contact(const PreparedScene& nominal) {
+void require_recorded_contact(const PreparedScene& nominal) {
   require(nominal.scene.device.has_contact(), [&] {
     return fmt::format("{}: needs a [contact] section: a laboratory records the state of the contact", nominal.scene.file.name());
   });
@@ -30,7 +30,7 @@ PreparedScene prepared(SceneFile file) {
   assume_spread(file);
   PreparedScene nominal = prepare_and_choose(file, true);
   require_open_start(nominal.scene, "a device is closed");
-  require_contact(nominal);
+  require_recorded_contact(nominal);
   return nominal;
 }
 
@@ -73,7 +73,7 @@ PreparedScene with_model(const PreparedScene& nominal, const PracticeModel& mode
   if (model.stiffness != 1) stiffen(file, nominal.scene, model.stiffness);
   for (const std::string& assignment : model.set) file.set(assignment);
   PreparedScene own = prepare(file);
-  require_contact(own);
+  require_recorded_contact(own);
   return own;
 }
 

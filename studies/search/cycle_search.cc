@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t searched_cycles = 4;  // number of cycles that are simulated for a candidate pair of waveforms
 // Largest error of the piecewise linear approximation of a waveform in a scene file, as a share of the peak voltage.
-constexpr double line_tolerance = 1e-5;
+constexpr double waveform_tolerance = 1e-5;
 
 class PairSearch {
  public:
@@ -140,7 +140,7 @@ SceneFile scene_of_cycle(const PreparedScene& given, const CycleWaveforms& wavef
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == dispersion_drive) continue;  // the dispersion force counts as a drive, but has no voltage
     Table table;
-    const double tolerance = line_tolerance * std::max(signals[k].peak(), 1e-9);
+    const double tolerance = waveform_tolerance * std::max(signals[k].peak(), 1e-9);
     for (const auto& [time, voltage] : polyline(signals[k], times.period, tolerance, 0)) {
       table.time.push_back(time);
       table.voltage.push_back(voltage);

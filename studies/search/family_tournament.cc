@@ -65,7 +65,8 @@ class FamilyTournament {
         .budget = budget_,
         .jobs = options_.jobs,
         .share = share,
-        .search = [this](Contender& r, Turn turn, const Chain& chain, SearchBudget& part) { search(r, turn.round, chain, part); },
+        .search = [this](Contender& r, SearchInRound turn, const Chain& chain,
+                         SearchBudget& part) { search(r, turn.round, chain, part); },
         .select = [this](std::vector<Contender> all, std::size_t k) { return select(std::move(all), k); }};
     tournament.run(family_rounds, std::move(contenders));
     std::ranges::reverse(result_.contenders);

@@ -1,6 +1,7 @@
 // Columns of tables and database files: figures of merit and searched parameters.
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "objectives/figures.h"
@@ -18,5 +19,7 @@ struct PointFigure {
 [[nodiscard]] PointFigure parameter_figure(const std::string& name);
 /// Returns the column of a figure of merit, with the prefix `before` for `quantity` and the suffix `words` for `name`.
 [[nodiscard]] PointFigure figure_column(const Figure& figure, const std::string& before = {}, const std::string& words = {});
+/// Returns a value as a store keeps it: one that is not finite becomes Metrics::unset.
+[[nodiscard]] inline double stored_value(double value) { return std::isfinite(value) ? value : Metrics::unset; }
 
 }  // namespace softland

@@ -263,7 +263,7 @@ class RunningSearch {
           return {equal, opening * all_seconds};
         },
         .search =
-            [&](std::size_t& family, Turn turn, const Chain& chain, const SearchBudget& part) {
+            [&](std::size_t& family, SearchInRound turn, const Chain& chain, const SearchBudget& part) {
               if (!may_go_on) return;
               const bool is_last = rounds[turn.round].contenders == 1;
               if ((costs == Costs::target) == is_last) begin_where_others_were(family, costs);

@@ -70,7 +70,7 @@ std::optional<Contender> search_at_pace(const SearchSetting& given, const Pace& 
   const auto share = [&](const Round& round, std::size_t) {
     return RoundShare{std::lround(length * round.closings), budget.seconds_left()};
   };
-  const auto search = [&](Point& x, Turn turn, Chain chain, SearchBudget& part) {
+  const auto search = [&](Point& x, SearchInRound turn, Chain chain, SearchBudget& part) {
     chain.seed = random_bits(identity, Stream::tournament, turn.round);
     const ImprovingClosings taken = improve(x, staged, chain, part, [&] {
       if (options.progress) options.progress(0);

@@ -101,7 +101,8 @@ class HalvingSearch {
         .budget = budget_,
         .jobs = options_.jobs,
         .share = [this](const Round& round, std::size_t contenders) { return share(round, contenders); },
-        .search = [this](Candidate& c, Turn turn, const Chain& chain, SearchBudget& part) { search(c, turn, chain, part); },
+        .search = [this](Candidate& c, SearchInRound turn, const Chain& chain,
+                         SearchBudget& part) { search(c, turn, chain, part); },
         .select = [this](const std::vector<Candidate>& ends, std::size_t k) { return select(ends, k); }};
     tournament.run(robust_rounds, leaders_);
     std::erase_if(found_, [](const Candidate& c) { return !std::isfinite(c.value); });
@@ -192,7 +193,7 @@ class HalvingSearch {
 
   // Searches from a candidate and replaces the candidate by the result. If the search used all devices, only a better result
   // replaces the candidate; otherwise every result does, and is then tried on all devices.
-  void search(Candidate& candidate, Turn turn, Chain chain, SearchBudget& part) {
+  void search(Candidate& candidate, SearchInRound turn, Chain chain, SearchBudget& part) {
     long index = first_index_ + static_cast<long>(turn.number) * indices_of_search_;
     const bool on_all = chain.devices >= cost_.devices();
     chain.start = candidate.x;

@@ -30,8 +30,8 @@ constexpr double more_open = 0.005;  // permitted excess of the share of devices
 constexpr std::uint64_t which_searched = 0, which_chosen = 1;
 constexpr double least_of_tournament = 0.4,
                  end_of_tournament = 0.75;  // lower and upper bound of the time for all searches, as shares of a time budget
-// `approaches`: waveform families added to the search if a drive can move the switch to its contact through stable equilibria.
-constexpr std::string_view quasi_static_short = "quasi-static:2", approaches = "+quasi-static+quasi-static:2";
+// `slow_families`: waveform families added to the search if a drive can move the switch to its contact through stable equilibria.
+constexpr std::string_view quasi_static_short = "quasi-static:2", slow_families = "+quasi-static+quasi-static:2";
 constexpr std::string_view usual_prefix = "usual_limit.";
 constexpr double alike = 1.05;  // candidates with a cost of up to this multiple of the least count as equally good
 // The quickest candidate with a cost of up to this multiple of the least is chosen, if no drive can move the switch to its
@@ -59,7 +59,7 @@ std::pair<std::vector<SearchSetting>, std::string> settings_of_tournament(const 
                                                                           const Progress& progress) {
   const bool chosen = !devices.families.empty();
   const std::string wanted =
-      chosen ? devices.families : std::string(tournament_families) + std::string(devices.is_of_before ? "" : approaches);
+      chosen ? devices.families : std::string(tournament_families) + std::string(devices.is_of_before ? "" : slow_families);
   const std::vector<std::string> names = families_of(wanted);
   if (chosen) return {search_settings(file, options.target, options.actuator, wanted, progress), wanted};
   std::vector<SearchSetting> settings{search_setting(file, options.target, options.actuator, names.front(), progress)};

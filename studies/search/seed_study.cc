@@ -50,8 +50,6 @@ StoredPlan seed_plan(const StoredSearch& search, const std::vector<std::string>&
   return plan;
 }
 
-double finite(double value) { return std::isfinite(value) ? value : Metrics::unset; }
-
 SearchOfSeed search_of(const StoredRow& row, std::uint64_t seed, const AskedFigures& asked) {
   SearchOfSeed one{.seed = seed, .status = row.status, .termination = {}};
   std::size_t at = 1;
@@ -172,12 +170,13 @@ StoredRow SeedStudy::row(std::uint64_t k, const OptimizeResult& result, double c
       .values = {static_cast<double>(search_.seed(k))}};
   const Metrics figures = has_best ? result.best->metrics : Metrics{};
   for (const Figure& figure : figures_of(search_))
-    row.values.push_back(has_best ? finite(figure.value(figures)) : Metrics::unset);
+    row.values.push_back(has_best ? stored_value(figure.value(figures)) : Metrics::unset);
   const auto truth = [](bool is) { return is ? 1.0 : 0.0; };
-  row.values.insert(row.values.end(), {truth(result.goal_met), truth(result.confirmed), truth(result.better_than_baseline),
-                                       has_best ? finite(result.best_cost) : Metrics::unset, finite(result.baseline_cost),
-                                       static_cast<double>(result.search.evaluations), closings});
-  for (const std::string& name : variables_) row.values.push_back(finite(result.parameter(name)));
+  row.values.insert(row.values.end(),
+                    {truth(result.goal_met), truth(result.confirmed), truth(result.better_than_baseline),
+                     has_best ? stored_value(result.best_cost) : Metrics::unset, stored_value(result.baseline_cost),
+                     static_cast<double>(result.search.evaluations), closings});
+  for (const std::string& name : variables_) row.values.push_back(stored_value(result.parameter(name)));
   json extra{{"termination", to_string(result.search.termination)}};
   if (has_best) extra["scene_toml"] = result.best_scene->scene.file.text();
   row.extra = extra.dump();

@@ -49,7 +49,7 @@ struct RoundShare {
 };
 
 /// A search in a tournament: the number of the round, and the number of the search (contender) in this round.
-struct Turn {
+struct SearchInRound {
   std::size_t round = 0, number = 0;
 };
 
@@ -63,7 +63,7 @@ struct Tournament {
   std::function<RoundShare(const Round&, std::size_t contenders)> share;
   /// Runs the search of a contender within `part`, the budget of the round. This function must set start and seed of its copy
   /// of `chain`. It is called from several threads.
-  std::function<void(Contender&, Turn turn, const Chain& chain, SearchBudget& part)> search;
+  std::function<void(Contender&, SearchInRound turn, const Chain& chain, SearchBudget& part)> search;
   /// Compares the searches (contenders) after a round, whose number counts from 0, and returns those of the next round.
   std::function<std::vector<Contender>(std::vector<Contender> contenders, std::size_t round)> select;
 
