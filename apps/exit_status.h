@@ -25,7 +25,7 @@ inline constexpr std::array exit_statuses{
     ExitStatus{exit_done, "done; also a switch that stays open as commanded"},
     ExitStatus{exit_bad_input, "bad input, something unavailable, or missing packages"},
     ExitStatus{exit_numerical_failure, "numerical failure"},
-    ExitStatus{exit_no_success, "done, but the goal was not reached"},
+    ExitStatus{exit_no_success, "done without success: the switch stays open, or nothing is better than the plain step"},
     ExitStatus{exit_build_failed, "the build failed (launcher)"},
     ExitStatus{exit_internal_error, "internal error: a fault of softland, please report it"},
     ExitStatus{exit_system_error, "no memory or threads from the system"},

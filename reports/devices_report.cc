@@ -321,22 +321,25 @@ ReportTable all_rows(const DevicesFindings& d) {
   return devices_table(d, rows, ShownIn::page);
 }
 
-// Describes the drive that moves the switch to its contact: "The piezo carries 96.3 % of the devices to their contact ..."
+// Describes the drive that moves the switch to its contact, or could: "The piezo carries 96.3 % of the devices to their contact
+// ..."
 std::string path_prose(const DevicesFindings& d) {
   if (!d.stable_path) return {};
   const DevicesFindings::StablePath& path = *d.stable_path;
   const std::string drive = path.drives.front() == piezo_drive ? "piezo" : "electrode " + path.drives.front();
+  const bool is_used = d.better_than_plain_step && d.waveform.starts_with(quasi_static_family);
   std::string words = fmt::format(
-      "The {} carries {} of the devices to their contact through stable equilibria within {} (the nominal design "
-      "touches at {}).",
-      drive, percent(path.share), quantity(path.limit, "V"), quantity(path.reaches, "V"));
-  if (path.share < 1) words += " The electrode pulls in the others, at a higher impact velocity (see the 99th percentile).";
+      "The {} {} {} of the devices to their contact through stable equilibria within {} (the nominal design touches at {}){}.",
+      drive, is_used ? "carries" : "alone can carry", percent(path.share), quantity(path.limit, "V"), quantity(path.reaches, "V"),
+      is_used ? "" : ", but best.toml does not do so");
+  if (is_used && path.share < 1)
+    words += " The electrode pulls in the others, at a higher impact velocity (see the 99th percentile).";
   if (drive == "piezo") words += " The model has no creep and no hysteresis of the piezo.";
   return words;
 }
 
 std::string delay_prose(const DevicesFindings& d) {
-  if (!std::isfinite(d.step_delay)) return {};
+  if (!std::isfinite(d.step_delay) || !d.better_than_plain_step) return {};
   return fmt::format(
       "The plain step of the electrode is delayed to {}, when the piezo has closed the contact; --hold-step fixed keeps it at t "
       "= 0.",

@@ -82,12 +82,15 @@ std::string words_after(const LimitRecord::Landing& landing) {
   return words;
 }
 
-std::string words_of_catch(const LimitRecord::Landing& landing) {
-  const double pulled = landing.catch_time - landing.catch_delay;
-  if (!(pulled > 0)) return "soft landing";
-  std::string words = fmt::format("soft landing with a pulse of {}", quantity(pulled, "s"));
-  words += landing.catch_delay > 0 ? fmt::format(", {} after the touch", quantity(landing.catch_delay, "s")) : " at the touch";
-  return words;
+std::string words_of_catch(const LimitRecord::Landing& landing, double permitted) {
+  constexpr double same = 1.5;  // largest ratio of the simulated impact velocity to the permitted one that needs no word
+  const double pulled = landing.catch_time - landing.catch_delay, ratio = landing.metrics.impact_velocity / permitted;
+  std::string words = "soft landing";
+  if (pulled > 0) {
+    words += fmt::format(" with a pulse of {}", quantity(pulled, "s"));
+    words += landing.catch_delay > 0 ? fmt::format(", {} after the touch", quantity(landing.catch_delay, "s")) : " at the touch";
+  }
+  return ratio > same ? fmt::format("{}, {:.0f} times as fast as permitted", words, ratio) : words;
 }
 
 ReportTable touches_table(const LimitRecord& limit) {
@@ -98,7 +101,7 @@ ReportTable touches_table(const LimitRecord& limit) {
       least_row("least time, every mode at rest", limit.rest)};
   if (limit.landing) {
     const Metrics& m = limit.landing->metrics;
-    table.rows.push_back({words_of_catch(*limit.landing), quantity(m.initial_contact_time, "s", 4),
+    table.rows.push_back({words_of_catch(*limit.landing, limit.impact_velocity), quantity(m.initial_contact_time, "s", 4),
                           quantity(m.impact_velocity, "m/s"), words_after(*limit.landing)});
   }
   return table;
@@ -295,7 +298,7 @@ std::string svg_of(const LimitRecord& limit) {
   }
   const bool found = limit.touch.status == Status::done;
   const std::string model = model_of(limit);
-  const std::string headline = found ? fmt::format("No waveform touches before {} at an impact velocity of at most {}{}",
+  const std::string headline = found ? fmt::format("The fastest waveform that was found touches after {} at {} or less{}",
                                                    quantity(limit.touch.time, "s", 4), quantity(limit.impact_velocity, "m/s"),
                                                    model.empty() ? "" : fmt::format(", with {}", model))
                                      : "The least time was not found: " + why_not(limit.touch);

@@ -23,8 +23,8 @@ struct ExportVerb : Usual, ExportRequest {
       "Examples:\n  softland export softland-out --format spice-pwl > drive.cir\n"
       "  softland export softland-out --drive piezo --format keysight-arb --sample-rate \"25 MHz\" --bits 14 --amplifier 20 > "
       "piezo.arb\n"
-      "  softland export softland-out --measured \"Vdp=14.6 V,frequency=10.2 kHz\" > device-17.csv\n"
-      "  softland export softland-out --measured \"Vdp=14.6 V,frequency=10.2 kHz,piezo=1.6 %/V\" > device-17.csv\n"
+      "  softland export softland-out --measured \"Vdp=22.6 V,frequency=15.5 kHz\" > device-17.csv\n"
+      "  softland export softland-out --measured \"Vdp=22.6 V,frequency=15.5 kHz,piezo=107 %/V\" > device-17.csv\n"
       "  softland export softland-out --contact-record vcd > contact.vcd\n"
       "  softland export softland-out --contact-record pwl --devices 20 > contacts.cir";
 

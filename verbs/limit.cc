@@ -1,4 +1,4 @@
-// Verb `limit`: computes the least time in which any waveform closes the switch at a permitted impact velocity.
+// Verb `limit`: computes the least time in which a waveform closes the switch at a permitted impact velocity.
 #include "studies/search/limit.h"
 
 #include <memory>
@@ -25,13 +25,14 @@ Outcome shown(LimitRecord found) {
 
 struct LimitRequest : Usual {
   static constexpr bool is_explorable = true;
-  static constexpr auto name = "limit", about = "compute the least time in which any waveform can close the switch softly",
+  static constexpr auto name = "limit", about = "compute the least time in which a waveform can close the switch softly",
                         python = "limit", leaves = "folder for limit.json, limit.svg and the landing as best.toml and best.csv";
   static constexpr auto remarks =
       "The least time is that of the best waveform of any shape within the limits of [driver.*], found by direct collocation.\n"
-      "It is a lower bound for every waveform with these voltage limits and this impact velocity, in the model of the scene.\n"
+      "The optimum is a local one, for these voltage limits and this impact velocity in the model of the scene.\n"
       "A beam with more modes may touch a little earlier (--set structure.modes=6). The reported landing is simulated. It may\n"
-      "take longer than the least time if a beam must also come to rest.\n"
+      "take longer than the least time if a beam must also come to rest. Without --impact-velocity, landings at three and ten\n"
+      "times the permitted velocity are tried, too.\n"
       "Examples:\n  softland limit scenes/mem-gold.toml\n"
       "  softland limit scenes/mem-gold-pzt.toml --actuator both --impact-velocity \"1 mm/s\" --out limit\n"
       "  softland limit scenes/mem-gold-pzt.toml --actuator pzt --start softland-out --no-curves";

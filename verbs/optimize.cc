@@ -125,15 +125,16 @@ void options(Archive& a, OptimizeVerb& r) {
       "Without --robust the search never ends worse than its start; may be repeated");
   a.object("start", "Sequence[Mapping[str, Waveform]]", "()", "waveforms by drive [V] to start from");
   a.as({.type = "int | str | None"})
-      .text("budget", r.budget, "N|TIME",
-            fmt::format("number of evaluations, or time such as \"90 s\". Default: {} for an electrode, {} for several drives, "
-                        "{} for a piezo, and half as many again for the targets {}. "
-                        "A search over devices adds {} closings of devices, up to twice as many if many devices land softly, "
-                        "or fewer if closings are slow to simulate (the first line of the output says so). "
-                        "With --robust auto, N counts all closings; with one statistic, closings of devices (default: {})",
-                        default_budget(Target::bounce, Shaped::electrode), default_budget(Target::bounce, Shaped::several),
-                        default_budget(Target::bounce, Shaped::piezo), targets_with_own_cost(), tournament_closings,
-                        default_closings));
+      .text(
+          "budget", r.budget, "N|TIME",
+          fmt::format(
+              "number of evaluations, or time such as \"90 s\". Default: {} for an electrode, {} for several drives, "
+              "{} for a piezo, and half as many again for the targets {}. "
+              "A search over devices adds {} closings of devices, up to twice as many if many devices land softly, "
+              "or fewer if closings are slow to simulate (the first line of the output says so). "
+              "With --robust auto, N counts the closings of the search, beside those by which its waveforms are compared and judged; with one statistic, closings of devices (default: {})",
+              default_budget(Target::bounce, Shaped::electrode), default_budget(Target::bounce, Shaped::several),
+              default_budget(Target::bounce, Shaped::piezo), targets_with_own_cost(), tournament_closings, default_closings));
   seed_option(a.as({.type = "int | None"}), r.seed, "the same result, whatever --jobs is");
   a.program().text("seeds", r.seeds, "N",
                    "search from N seeds, --seed and the following ones, as one study: the best result is reported, "
