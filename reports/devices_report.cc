@@ -89,14 +89,22 @@ std::string yields_cell(const DevicesFindings::Row& row) {
   return cell + " %";
 }
 
+bool is_calibrated(const DevicesFindings::Row& row) { return std::isfinite(row.pull_in_error) || std::isfinite(row.time_error); }
+
+// Returns true for devices that are measured without a gain: the waveform and the figures are those of best.toml.
+bool is_without_gain(const DevicesFindings& d, const DevicesFindings::Row& row) {
+  const DevicesFindings::Row* const own = d.row(for_the_devices);
+  return is_calibrated(row) && own != nullptr && row.name != d.measured && row.bounce_free == own->bounce_free &&
+         value_in(row.at_95, columns[0].key) == value_in(own->at_95, columns[0].key);
+}
+
 // Returns the name of a row in tables of waveforms: the choice (such as the fastest) and the file of the waveform.
 std::string shown_name(const DevicesFindings& d, const DevicesFindings::Row& row) {
   if (row.name == for_nominal_design) return "nominal design: drawing.toml";
   for (const DevicesFindings::Choice& one : d.choices) {
     if (one.row() == row.name) return fmt::format("{}: {}", one.name, one.file);
   }
-  const bool is_calibrated = std::isfinite(row.pull_in_error) || std::isfinite(row.time_error);
-  return row.name == for_the_devices ? "best.toml" : is_calibrated ? "per-device calibration: " + row.name : row.name;
+  return row.name == for_the_devices ? "best.toml" : is_calibrated(row) ? "per-device calibration: " + row.name : row.name;
 }
 
 // Least share of devices with a failure, such as a switch that stays open, for which a table has a column.
@@ -167,9 +175,13 @@ std::string choices_picture(const DevicesFindings& d) {
          "</div>\n";
 }
 
-// Draws the bounce-free share of devices and the impact velocity against the error of the measured pull-in voltage Vdp.
+// Draws the bounce-free share of devices and the impact velocity against the error of the measured pull-in voltage Vdp. Nothing
+// is drawn if they do not depend on it.
 std::string error_curve(const DevicesFindings& d) {
-  if (d.by_error.size() < 2) return {};
+  const auto is_first = [&](const CalibrationError& one) {
+    return one.bounce_free == d.by_error.front().bounce_free && one.impact_speed == d.by_error.front().impact_speed;
+  };
+  if (std::ranges::all_of(d.by_error, is_first)) return {};
   CurveTables tables;
   CurveTable& table = tables["by-error"];
   for (const CalibrationError& known : d.by_error) {
@@ -308,7 +320,8 @@ ReportTable choices_table(const DevicesFindings& d) {
   return devices_table(d, rows, ShownIn::terminal);
 }
 
-// Returns a table of the plain step and all found waveforms, those that have files of their own first.
+// Returns a table of the plain step and all found waveforms, those that have files of their own first. Measured devices without a
+// gain are left out: a sentence below the table tells of them.
 ReportTable all_rows(const DevicesFindings& d) {
   std::vector<std::pair<std::string, const DevicesFindings::Row*>> rows;
   const auto add = [&](const DevicesFindings::Row* row) {
@@ -317,7 +330,9 @@ ReportTable all_rows(const DevicesFindings& d) {
   };
   add(d.row(plain_step_row));
   for (const DevicesFindings::Choice& one : d.choices) add(d.row(one.row()));
-  for (const DevicesFindings::Row& row : d.rows) add(&row);
+  for (const DevicesFindings::Row& row : d.rows) {
+    if (!is_without_gain(d, row)) add(&row);
+  }
   return devices_table(d, rows, ShownIn::page);
 }
 

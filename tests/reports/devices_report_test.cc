@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -45,7 +46,7 @@ ClosingRecord devices_result() {
                     .seed = 7,
                     .closings = 150'000,
                     .measure = "cvar:0.9",
-                    .waveform = "catch",
+                    .waveform = "quasi-static",
                     .better_than_plain_step = true};
   d.rows = {row("plain step", 0, 0.107, 732e-9), row("for the drawing", 0.02, 0.08, 150e-9),
             row("for the devices", 0.01, 0.033, 90e-9)};
@@ -139,6 +140,21 @@ TEST(DevicesReport, DrawsDevicesUnderTheStepAndTheWaveformSideBySide) {
   EXPECT_THAT(page_html(closing_document(r)), Not(HasSubstr("clip-devices-best")));
 }
 
+TEST(DevicesReport, LeavesOutMeasuredDevicesWithoutAGain) {
+  ClosingRecord r = devices_result();
+  DevicesFindings& d = *r.search->devices;
+  d.measured.clear();
+  EXPECT_THAT(page_html(closing_document(r)), HasSubstr("per-device calibration: Vdp to 1 %"));
+  for (DevicesFindings::Row& one : d.rows) {
+    if (std::isfinite(one.pull_in_error)) one.bounce_free = d.rows[2].bounce_free, one.at_95 = d.rows[2].at_95;
+  }
+  d.by_error[1] = {.error = 0.01, .bounce_free = d.by_error[0].bounce_free, .impact_speed = d.by_error[0].impact_speed};
+  const std::string page = page_html(closing_document(r));
+  EXPECT_THAT(page, Not(HasSubstr("per-device calibration: Vdp to 1 %")));
+  EXPECT_THAT(page, Not(HasSubstr("against the error of Vdp")));
+  EXPECT_THAT(page, HasSubstr("Per-device calibration does not help"));
+}
+
 TEST(DevicesReport, SaysHowManyLandWhereHalfOfThemDo) {
   ClosingRecord r = devices_result();
   r.search->devices->rows[2].bounce_free = 0.77;
@@ -156,6 +172,9 @@ TEST(DevicesReport, SaysInWhichFigureNothingIsAsGoodAsThePlainStep) {
       HasSubstr(
           "(assumed, because the scene has no [spread]: gaps ± 2 %), no waveform that was found is as good as the plain step"));
   EXPECT_THAT(words, HasSubstr("the best one is worse in its largest impact velocity. best.toml is the plain step."));
+  const std::string text = terminal_text(closing_document(r));
+  EXPECT_THAT(text, HasSubstr("The piezo alone can carry 96.5")) << "best.toml does not do so";
+  EXPECT_THAT(text, Not(HasSubstr("is delayed to")));
 }
 
 TEST(DevicesReport, ComesBackFromJsonAsItWas) {

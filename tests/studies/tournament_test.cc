@@ -24,7 +24,7 @@ std::vector<std::string> searches(SearchBudget& budget, double closings_over_tho
       .share = [&](const Round& round,
                    std::size_t) { return RoundShare{static_cast<long>(closings_over_those_of_the_table * round.closings)}; },
       .search =
-          [&](const std::string& name, Turn turn, const Chain& chain, SearchBudget& part) {
+          [&](const std::string& name, SearchInRound turn, const Chain& chain, SearchBudget& part) {
             EXPECT_EQ(chain.devices, rounds[turn.round].devices);
             EXPECT_EQ(chain.step, rounds[turn.round].step);
             EXPECT_GE(part.left(), chain.closings);
