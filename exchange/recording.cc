@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/engineering.h"
@@ -103,6 +104,8 @@ TimeAxis time_axis(const Recording& recording) {
   axis.last = t.back();
   for (std::size_t i = 1; i < t.size(); ++i) {
     axis.repeated += t[i] == t[i - 1];
+    axis.least_interval = std::min(axis.least_interval, t[i] - t[i - 1]);
+    axis.greatest_interval = std::max(axis.greatest_interval, t[i] - t[i - 1]);
     if (t[i] < t[i - 1] && !axis.back) axis.back = i;
   }
   if (recording.interval) {
@@ -129,8 +132,12 @@ std::string summary(const Recording& recording) {
   } else if (is_one) {
     text += fmt::format(", at {}", engineering(axis.first, "s", digits));
   } else {
-    text += fmt::format(", every {}, from {} to {}", engineering(axis.interval, "s", digits),
-                        engineering(axis.first, "s", digits), engineering(axis.last, "s", digits));
+    constexpr double rounding = 1e-3;  // largest difference of intervals by rounded times, relative to the interval
+    const bool differ = axis.greatest_interval - axis.least_interval > rounding * std::abs(axis.interval);
+    text += differ ? fmt::format(", at intervals of {} to {}", engineering(axis.least_interval, "s", digits),
+                                 engineering(axis.greatest_interval, "s", digits))
+                   : fmt::format(", every {}", engineering(axis.interval, "s", digits));
+    text += fmt::format(", from {} to {}", engineering(axis.first, "s", digits), engineering(axis.last, "s", digits));
   }
   for (const std::string& note : recording.notes) text += "; " + note;
   for (const std::string& what : recording.left_out) text += "; left out: " + what;

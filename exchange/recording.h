@@ -84,6 +84,8 @@ struct TimeAxis {
   double last = std::numeric_limits<double>::quiet_NaN();   ///< time of the last row [s]
   /// Sampling interval that the file states, or else the mean interval [s].
   double interval = std::numeric_limits<double>::quiet_NaN();
+  /// Least and greatest time between a row and the row above [s].
+  double least_interval = std::numeric_limits<double>::infinity(), greatest_interval = -least_interval;
   std::size_t repeated = 0;              ///< number of rows with the same time as the row above
   std::optional<std::size_t> back = {};  ///< first row whose time is before that of the row above
 };

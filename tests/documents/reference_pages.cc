@@ -536,27 +536,28 @@ const Members& status_members() {
 }
 
 const Members& recording_members() {
-  static const Members all{
-      {.key = "format", .type = "text", .about = "format of the file"},
-      {.key = "time",
-       .type = "record",
-       .about = "times of the file",
-       .members = {{.key = "first_s", .type = "number", .about = "first time"},
-                   {.key = "last_s", .type = "number", .about = "last time"},
-                   {.key = "interval_s", .type = "number", .about = "time between samples; null where it differs"},
-                   {.key = "repeated", .type = "whole number", .about = "number of repeated times"}}},
-      {.key = "channels[]",
-       .type = "record",
-       .about = "channels of the file",
-       .members = {{.key = "name", .type = "text", .about = "name of the channel"},
-                   {.key = "unit", .type = "text", .about = "its unit in the file"},
-                   {.key = "samples", .type = "whole number", .about = "number of samples"},
-                   {.key = "first", .type = "number", .about = "first sample [unit of the channel]"},
-                   {.key = "last", .type = "number", .about = "last sample"},
-                   {.key = "minimum", .type = "number", .about = "smallest sample"},
-                   {.key = "maximum", .type = "number", .about = "largest sample"}}},
-      {.key = "left_out", .type = "list of texts", .about = "data that were not read"},
-      {.key = "notes", .type = "list of texts", .about = "assumptions about the file"}};
+  static const Members all{{.key = "format", .type = "text", .about = "format of the file"},
+                           {.key = "time",
+                            .type = "record",
+                            .about = "times of the file",
+                            .members = {{.key = "first_s", .type = "number", .about = "first time"},
+                                        {.key = "last_s", .type = "number", .about = "last time"},
+                                        {.key = "interval_s",
+                                         .type = "number",
+                                         .about = "time between samples, as stated or the mean; null without times"},
+                                        {.key = "repeated", .type = "whole number", .about = "number of repeated times"}}},
+                           {.key = "channels[]",
+                            .type = "record",
+                            .about = "channels of the file",
+                            .members = {{.key = "name", .type = "text", .about = "name of the channel"},
+                                        {.key = "unit", .type = "text", .about = "its unit in the file"},
+                                        {.key = "samples", .type = "whole number", .about = "number of samples"},
+                                        {.key = "first", .type = "number", .about = "first sample [unit of the channel]"},
+                                        {.key = "last", .type = "number", .about = "last sample"},
+                                        {.key = "minimum", .type = "number", .about = "smallest sample"},
+                                        {.key = "maximum", .type = "number", .about = "largest sample"}}},
+                           {.key = "left_out", .type = "list of texts", .about = "data that were not read"},
+                           {.key = "notes", .type = "list of texts", .about = "assumptions about the file"}};
   return all;
 }
 

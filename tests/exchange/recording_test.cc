@@ -262,6 +262,11 @@ TEST(Recording, ASummaryIsOneLine) {
   const std::string line = summary(read("Time (us),A (V),B (mV)\n-1,0,1\n0,1,2\n1,2,3\n"));
   EXPECT_EQ(line, "columns: A [V], B [mV], 3 samples, every 1 us, from -1 us to 1 us");
   EXPECT_EQ(summary(read("Time (us),A (V)\n22,17.5\n")), "columns: A [V], 1 sample, at 22 us") << "it has no interval";
+  EXPECT_EQ(summary(read("Time (us),A (V)\n0,0\n1,1\n3,1\n3,2\n8,3\n", {.uneven = true})),
+            "columns: A [V], 5 samples, at intervals of 0 s to 5 us, from 0 s to 8 us");
+  EXPECT_EQ(summary(read("Time (us),A (V)\n0,0\n100,1\n200.01,2\n300,3\n", {.uneven = true})),
+            "columns: A [V], 4 samples, every 100 us, from 0 s to 300 us")
+      << "the times are rounded";
 }
 
 }  // namespace
