@@ -31,7 +31,9 @@ GasLaw gas_law(const Gas& gas, double width, double thickness, double unit_quali
 }
 
 double squeeze_number(const FilmState& gas, double width, double gap, double rate) {
-  return 12 * viscosity(gas) * width * width * rate / (gas.pressure * gap * gap);
+  const VeijolaFilm rarefied{.viscosity = viscosity(gas), .mean_free_path = mean_free_path(gas), .width = 1};
+  const double effective_viscosity = -rarefied.load(gap, 1.0) * gap * gap * gap;
+  return 12 * effective_viscosity * width * width * rate / (gas.pressure * gap * gap);
 }
 
 namespace {

@@ -44,8 +44,9 @@ struct GasLaw : internal::LawsOf<Gas>::Type {
   return std::visit([&](const auto& l) { return -l.load(gap, 1.0); }, law);
 }
 
-/// Returns the squeeze number 12 mu a^2 rate / (p h^2) of a gas film: viscosity mu, width a [m], ambient pressure p, gap h [m].
-/// `rate` is the relative rate of change of the gap [1/s].
+/// Returns the squeeze number 12 mu_eff a^2 rate / (p h^2) of a gas film: width a [m], ambient pressure p, gap h [m]. `rate` is
+/// the relative rate of change of the gap [1/s]. mu_eff is the effective viscosity of the rarefied gas (veijola.h): a gas whose
+/// mean free path is long against the gap flows out before it is compressed.
 [[nodiscard]] double squeeze_number(const FilmState& gas, double width, double gap, double rate);
 
 /// Returns the squeeze number of the gas film at the contact point, for the rate |v| / h: velocity v, gap h. Returns 0 when the

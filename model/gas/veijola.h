@@ -4,7 +4,7 @@
 //
 // mu is the viscosity [Pa s], a the width [m], h the local gap [m], lambda the mean free path [m], v the velocity towards the
 // electrode [m/s]. The fit is within 5 % of the linearised Boltzmann solution of Poiseuille flow for Kn up to 880.
-// Incompressible: valid for squeeze numbers 12 mu a^2 omega / (p h^2) below about 10. The limit Kn -> 0 is the strip film.
+// Incompressible: valid for squeeze numbers 12 mu_eff a^2 omega / (p h^2) below about 10. The limit Kn -> 0 is the strip film.
 // Singular at h = 0. Source: Veijola, Kuisma, Lahdenpera & Ryhanen, Sensors and Actuators A 48 (1995) 239, for the flow
 // conductance of Fukui & Kaneko 1988.
 #pragma once

@@ -6,6 +6,7 @@
 
 #include "base/literals.h"
 #include "model/closing.h"
+#include "model/gas/gas_law.h"
 #include "tests/support/devices.h"
 
 namespace softland {
@@ -94,9 +95,19 @@ TEST(GasLimits, ThatATrajectoryLeavesAreWarnings) {
               testing::MatchesRegex("gas law veijola: squeeze number .* exceeds 10: the film is compressed, not squeezed out"));
 }
 
-TEST(SqueezeNumber, IsTheTextbookOne) {
-  const FilmState gas{.viscosity = 2e-5};
-  EXPECT_DOUBLE_EQ(squeeze_number(gas, 20_um, 2_um, 1e5), 12 * 2e-5 * 4e-10 * 1e5 / (101325 * 4e-12));
+// A thin gas is rarefied, and flows out before it is compressed: the larger Knudsen number is the only limit that is left.
+TEST(GasLimits, OfAThinGasAreItsKnudsenNumberAlone) {
+  const auto warnings = closing(StripGas{.film = {.pressure = 1}}).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], testing::HasSubstr("Knudsen number"));
+  EXPECT_THAT(closing(VeijolaGas{.film = {.pressure = 100}}).warnings, testing::IsEmpty());
+}
+
+TEST(SqueezeNumber, IsTheTextbookOneWithTheViscosityOfTheRarefiedGas) {
+  const double textbook = 12 * 2e-5 * 4e-10 * 1e5 / (101325 * 4e-12);
+  EXPECT_NEAR(squeeze_number({.viscosity = 2e-5, .mean_free_path = 1e-18}, 20_um, 2_um, 1e5), textbook, 1e-11 * textbook);
+  // A mean free path as long as the gap.
+  EXPECT_DOUBLE_EQ(squeeze_number({.viscosity = 2e-5, .mean_free_path = 2_um}, 20_um, 2_um, 1e5), textbook / 10.638);
 }
 
 }  // namespace
