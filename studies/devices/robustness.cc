@@ -307,7 +307,21 @@ SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& d
   return internal::scene_of_values(ensemble, drive, ensemble.values(device), options.seed, device);
 }
 
+double window_for(const PreparedScene& nominal, std::span<const Signal> commanded) {
+  constexpr double slower = 0.1, periods = 2;
+  const double last = last_breakpoint(commanded), own = nominal.duration;
+  return std::max(own, last + periods * nominal.model.basis().in_contact_period() + (last > own ? slower * last : 0));
+}
+
 namespace internal {
+namespace {
+
+// Returns the simulated time of the devices [s]: that which the scene gives, or one that holds its waveforms.
+double window_of(const PreparedScene& nominal) {
+  return nominal.scene.simulate.duration > 0 ? nominal.duration : window_for(nominal, nominal.commanded(nominal.waveforms()));
+}
+
+}  // namespace
 
 DriveRobustness summarised(NamedDrive drive, MeasuredUnits known, std::vector<DeviceOutcome> outcomes) {
   DriveRobustness all{.name = std::move(drive.name),
@@ -319,7 +333,7 @@ DriveRobustness summarised(NamedDrive drive, MeasuredUnits known, std::vector<De
 }
 
 EnsembleRun run_of(const PreparedScene& nominal, const RobustnessOptions& options) {
-  return {.duration = nominal.duration,
+  return {.duration = window_of(nominal),
           .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance),
           .seed = options.seed,
           .jobs = options.jobs,
@@ -337,6 +351,8 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
                           std::uint64_t seed, std::size_t device) {
   const PreparedScene& nominal = ensemble.nominal();
   SceneFile file = ensemble.scene(values);
+  if (const double window = window_of(nominal); window > nominal.duration)
+    file.assign("simulate.duration", Quantity{.value = window, .dimension = dimension::time});
   DeviceUnits units;
   if (const Calibration& calibration = drive.known.calibration(); !calibration.is_empty()) {
     const SampledDevice sampled = DeviceBuilder(ensemble).device(values);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -145,6 +146,10 @@ struct NamedDrive {
 /// An exception is a sine with errors of times or voltages, which becomes a table (DeviceDrives::written).
 [[nodiscard]] SceneFile scene_of_device(const PreparedScene& nominal, const DriveRobustness& drive, std::size_t device,
                                         const RobustnessOptions& options);
+
+/// Returns the simulated time in which these commanded signals end, and in which the contact settles afterwards; at least that of
+/// `nominal` [s].
+[[nodiscard]] double window_for(const PreparedScene& nominal, std::span<const Signal> commanded);
 
 namespace internal {
 

@@ -279,20 +279,25 @@ class RobustSearchStudy {
 
   // Returns the scene with a simulated time in which all offered waveforms end, and the bounces under the plain step, too.
   [[nodiscard]] PreparedScene over_whole_window(PreparedScene given) const {
-    double last = 0;
-    const auto consider = [&](const ChosenFrom& one) {
-      last = std::max(last, last_breakpoint(first().given.commanded(first().drives(one.waveforms))));
-    };
-    for (const DeviceChoice& one : result_->choices) consider(one.candidate);
-    const double needed = last + 2 * given.model.basis().in_contact_period() + (last > given.duration ? 0.1 * last : 0);
-    const double bounces = 1.2 * searched_.free().until;
-    if (const double window = std::max(needed, bounces); window > given.duration) {
-      const double digits = std::pow(10, std::floor(std::log10(window)) - 1);
-      given.duration = std::ceil(window / digits) * digits;
-      given.scene.simulate.duration = given.duration;
-      given.scene.file.assign("simulate.duration", Quantity{.value = given.duration, .dimension = dimension::time});
+    double window = whole_window({});
+    for (const DeviceChoice& one : result_->choices) window = std::max(window, whole_window(one.candidate.waveforms));
+    if (window > given.duration) {
+      given.duration = given.scene.simulate.duration = window;
+      give_time(given.scene.file, window);
     }
     return given;
+  }
+
+  // Returns the simulated time in which these waveforms end, and the bounces under the plain step, too [s].
+  [[nodiscard]] double whole_window(const DriveWaveforms& waveforms) const {
+    const PreparedScene& given = first().given;
+    const double needed = window_for(given, given.commanded(first().drives(waveforms))), bounces = 1.2 * searched_.free().until;
+    const double window = std::max(needed, bounces), digits = std::pow(10, std::floor(std::log10(window)) - 1);
+    return window > given.duration ? std::ceil(window / digits) * digits : window;
+  }
+
+  static void give_time(SceneFile& file, double window) {
+    file.assign("simulate.duration", Quantity{.value = window, .dimension = dimension::time});
   }
 
   void add(const CalibratedSearch& measured) {
@@ -312,6 +317,8 @@ class RobustSearchStudy {
     if (!best.is_worth_measuring(own)) return;
     findings().measured = best.name;
     result_->calibrated = with_waveforms(result_->nominal.baseline_scene, measured.best_waveforms);
+    if (const double window = whole_window(measured.best_waveforms); window > first().given.duration)
+      give_time(*result_->calibrated, window);
     result_->calibrated->set(best.knowledge.time_error ? fmt::format("calibration.{}.error=\"50 ns\"", measured_time)
                                                        : fmt::format("calibration.{}.error=\"1 %\"", measured_pull_in));
   }
@@ -446,8 +453,7 @@ class RobustSearchStudy {
   // Returns the nominal scene with these waveforms in volts, over the simulated time of the final evaluation.
   [[nodiscard]] SceneFile scene_of(const DriveWaveforms& waveforms) const {
     SceneFile file = with_waveforms(result_->nominal.baseline_scene, waveforms);
-    if (result_->varied.duration > first().given.duration)
-      file.assign("simulate.duration", Quantity{.value = result_->varied.duration, .dimension = dimension::time});
+    if (result_->varied.duration > first().given.duration) give_time(file, result_->varied.duration);
     return file;
   }
 

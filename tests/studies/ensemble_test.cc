@@ -411,6 +411,25 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {
   EXPECT_EQ(own.major_bounce_height, found.drives[1].outcomes[k].metrics.major_bounce_height);
 }
 
+// Without a simulate.duration the window of this scene ends before its waveform closes the devices.
+TEST(Robustness, HasAWindowThatHoldsTheWaveformUnlessTheSceneGivesOne) {
+  constexpr double before = 25e-6, after = 30e-6;
+  SceneFile file = gold({"structure.modes=2", "simulate.accuracy=1e-3", "driver.main.max_voltage=25 V"});
+  file.erase("simulate.duration");
+  const double window = prepare(file).duration;
+  file.set(
+      fmt::format("waveform.main={{family=\"pulse\", levels=[\"0 V\", \"18 V\", \"18.5 V\"], times=[\"{} s\", \"{} s\"], "
+                  "edge=\"1 us\"}}",
+                  window - before, window + after));
+  const auto closing = [&] {
+    const PreparedScene nominal = prepare(file);
+    return robustness(nominal, {{.name = "late", .waveforms = nominal.drives.waveforms()}}, {.samples = 16}).drives[1].closing;
+  };
+  EXPECT_EQ(closing().value, 1);
+  file.set(fmt::format("simulate.duration=\"{} s\"", window));
+  EXPECT_EQ(closing().value, 0) << "the scene asks for this window";
+}
+
 TEST(Robustness, JudgesEveryDriveOnTheSameDevicesBesideThePlainStep) {
   const PreparedScene nominal = prepare(gold_at_17_volts({"waveform.main.rise_time=40 us"}));
   const Robustness found = robustness(nominal, {{.name = "slow", .waveforms = nominal.drives.waveforms()}}, {.samples = 128});
