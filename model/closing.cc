@@ -367,4 +367,17 @@ Trajectory simulate_closing(const Switch& model, std::span<const Signal> drives,
   return t;
 }
 
+double first_closing(const Switch& model, std::span<const Signal> drives, ClosingOptions options) {
+  Recorder recorder;
+  const bool is_connection = model.contacts() > 1;
+  // The connection of several contacts may close after the first touch of one of them.
+  options.after_contact = is_connection ? std::numeric_limits<double>::infinity() : 0;
+  options.observer = [&](double, const double*, const double*) {
+    constexpr double on_the_plane = 1e-12;  // separation at which the connection is closed, relative to the contact gap
+    return is_connection && recorder.points.back().position >= (1 - on_the_plane) * model.contact_gap();
+  };
+  static_cast<void>(observe_closing(model, drives, options, recorder));
+  return recorder.touches.empty() ? std::numeric_limits<double>::quiet_NaN() : recorder.touches.front().begin;
+}
+
 }  // namespace softland

@@ -93,6 +93,10 @@ struct ClosingOptions {
 /// why_always_restarted() gives a reason.
 [[nodiscard]] Trajectory simulate_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options);
 
+/// Returns the time at which the contact closes first, or the connection of several contacts [s]; NaN if it does not close. The
+/// run ends then: options.after_contact and options.observer are ignored.
+[[nodiscard]] double first_closing(const Switch& model, std::span<const Signal> drives, ClosingOptions options);
+
 /// Simulates a closing and passes motion and touches to an observer; the returned trajectory has neither.
 [[nodiscard]] Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options,
                                          ClosingObserver& observer);

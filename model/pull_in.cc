@@ -43,12 +43,17 @@ class StepTrial {
     std::vector<Signal> signals;
     for (const double standing : bias_) signals.push_back(Signal::standing(standing));
     signals[drive_] = Signal::constant(value);
+    // Of several contacts, another one than that of the pull-in may touch first, or the connection may stay open.
+    const bool is_connection = model_.contacts() > 1;
     ClosingOptions options{.duration = 100 * 2 * pi / model_.basis().angular_frequencies()[0],
                            .tolerance = tolerance_,
-                           .after_contact = 0,
+                           .after_contact = is_connection ? std::numeric_limits<double>::infinity() : 0,
                            .stop = stop};
     int step = 0;
+    bool is_there = false;
     options.observer = [&](double time, const double* q, const double* v) {
+      is_there = is_connection && model_.contact_deflection(q) >= (1 - on_the_plane) * model_.contact_gap();
+      if (is_there) return true;
       // Compare the energies at every eighth step only: computing the energy more often costs more than an earlier end of the
       // run saves.
       if (++step % 8 != 0) return false;
@@ -58,7 +63,8 @@ class StepTrial {
                                                                           model_.film_energy(q, work_) <
                                                                       barrier.potential;
     };
-    return !simulate_closing(model_, signals, options).touches.empty();
+    const Trajectory run = simulate_closing(model_, signals, options);
+    return is_connection ? is_there : !run.touches.empty();
   }
 
  private:
@@ -90,6 +96,7 @@ class StepTrial {
   Statics statics_;
   EquilibriumBranch branch_;
   Switch::Workspace work_;
+  static constexpr double on_the_plane = 1e-12;  // distance at which the contact touches, relative to the contact gap
 };
 
 }  // namespace

@@ -180,6 +180,33 @@ TEST(SeveralContacts, TwoDimplesOfUnequalHeightShareTheImpact) {
   expect_near(run.rebounds_of(0).front().height, 5.7910299649032405e-08, 1e-5, "first rebound of the first");
 }
 
+// The pull-in is that of the first contact, whichever contacts make the connection.
+TEST(SeveralContacts, DynamicPullInIsThatOfTheFirstContact) {
+  const std::vector<Contact> dimples{spring("high", 247.5_um, 2_um, 1000), spring("low", 247.5_um, 2.005_um, 1000)};
+  const auto pull_in = [](const Device& device) {
+    const Switch model(device);
+    return dynamic_pull_in(model, 0, static_pull_in(model, 0)).voltage;
+  };
+  const double alone = pull_in(cantilever({dimples.front()}, 2));
+  for (const Connection needs : {Connection::all, Connection::any}) {
+    Device device = cantilever(dimples, 2);
+    device.connection = needs;
+    EXPECT_NEAR(pull_in(device), alone, 2 * dynamic_pull_in_precision * alone);
+  }
+}
+
+TEST(SeveralContacts, FirstClosingIsThatOfTheConnection) {
+  for (const Connection needs : {Connection::all, Connection::any}) {
+    Device device = cantilever({spring("high", 247.5_um, 2_um, 1000), spring("low", 247.5_um, 2.005_um, 1000)}, 2);
+    device.connection = needs;
+    const Switch model(device);
+    const std::vector<Signal> step{Signal::constant(20)};
+    const ClosingOptions options{.duration = 60e-6, .tolerance = 1e-9};
+    EXPECT_EQ(first_closing(model, step, options), simulate_closing(model, step, options).touches.front().begin);
+    EXPECT_TRUE(std::isnan(first_closing(model, std::vector<Signal>{Signal::constant(1)}, options)));
+  }
+}
+
 // Two equal contacts at one place act like one of twice the stiffness.
 TEST(SeveralContacts, CountIsTheNumberOfEqualContacts) {
   Contact both = spring("both", 247.5_um, 2_um, 1000);
