@@ -174,9 +174,8 @@ double default_window(const Switch& model, const std::vector<Signal>& signals) {
   std::vector<Signal> steps;
   for (const Signal& signal : signals) steps.push_back(Signal::constant(signal.hold_level(), signal.before()));
   const double longest = model.open_equilibrium(hold_levels(steps)) ? 10 : 1000;
-  const Trajectory closing = simulate_closing(
-      model, steps, {.duration = longest * usual, .tolerance = loose, .after_contact = 0, .max_steps = most_steps});
-  return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);
+  const double closing = first_closing(model, steps, {.duration = longest * usual, .tolerance = loose, .max_steps = most_steps});
+  return std::isfinite(closing) ? std::max(usual, closings * closing) : usual;
 }
 
 /// Returns the default simulated time (window) of a scene that opens a closed switch from `begin` on [s]. It ends two periods

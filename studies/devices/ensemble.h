@@ -97,8 +97,8 @@ struct DeviceOutcome {
   [[nodiscard]] double of(const Figure& figure) const;
 };
 
-/// Returns the time of first contact under a step of one drive from 0 V, with the other drives at a bias [s]. NaN if the switch
-/// does not close within `duration` [s].
+/// Returns the time of first contact, or of the first closing of the connection of several contacts, under a step of one drive
+/// from 0 V, with the other drives at a bias [s]. NaN if the switch does not close within `duration` [s].
 [[nodiscard]] double closing_time(const Switch& model, std::size_t drive, double step, Bias bias, double duration);
 /// Number of periods of the first mode within which a step must close a switch.
 inline constexpr double periods_to_close = 20;

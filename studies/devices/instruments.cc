@@ -206,6 +206,7 @@ std::vector<Waveform> DeviceReader::waveforms_of(const Instrument& instrument) c
 }
 
 DeviceReader::Reading DeviceReader::touch(const Instrument& instrument, bool with_slopes) {
+  if (model_->contacts() > 1) return of_motion(instrument, with_slopes);
   const EnsembleDrive drive{.waveforms = waveforms_of(instrument)};
   near_.drive_by(drive);
   const std::vector<Signal> signals = near_.signals();
@@ -239,8 +240,10 @@ VectorXd DeviceReader::followed(const Instrument& instrument, const Switch& mode
     constexpr double beyond = 1.0001;
     return run(beyond * instrument.times.back(), std::numeric_limits<double>::infinity(), points) ? points.values() : unknown;
   }
+  if (instrument.size() == 1)
+    return single(first_closing(model, signals, {.duration = window, .tolerance = tolerance_of_readings}));
   EdgeRecorder edges(model.contact_gap());
-  const double after = instrument.edges == 1 ? 0 : 2 * pi / nominal_.model.basis().angular_frequencies()[0];
+  const double after = 2 * pi / nominal_.model.basis().angular_frequencies()[0];
   return run(window, after, edges) ? edges.first(instrument.size()) : unknown;
 }
 

@@ -4,7 +4,8 @@
 //   release       voltage at which a slow ramp opens the switch again [V]
 //   frequency     of small undamped vibrations of the open switch about its rest position at a level [Hz]
 //   capacitance   of an electrode of the open switch at rest at a level [F]
-//   closing_time  time of the first touch under a step to a level, or under waveforms [s]
+//   closing_time  time at which the contact, or the connection of several, first closes under a step to a level, or under
+//                 waveforms [s]
 //   contact       times of the first edges of the contact's state under waveforms: contact, first opening, next contact [s]
 //   position      of the contact point at given times, under waveforms: towards the contact, from a straight beam [m]
 //   velocity      of the contact point at given times, under waveforms [m/s]

@@ -65,9 +65,7 @@ double closing_time(const Switch& model, std::size_t drive, double step, Bias bi
   std::vector<Signal> signals;
   for (const double standing : bias) signals.push_back(Signal::standing(standing));
   signals[drive] = Signal::constant(step);
-  const Trajectory end =
-      simulate_closing(model, signals, {.duration = duration, .tolerance = EnsembleRun{}.tolerance, .after_contact = 0});
-  return end.touches.empty() ? Metrics::unset : end.touches.front().begin;
+  return first_closing(model, signals, {.duration = duration, .tolerance = EnsembleRun{}.tolerance});
 }
 
 PullInMeter::PullInMeter(const PreparedScene& nominal, const MeasuredQuantities& quantities, double precision)

@@ -35,7 +35,6 @@ constexpr double widest_change = 0.25;  // largest change of the logarithm of a 
 // First step of the search for the best factors (of voltages or times), in the logarithm of a factor.
 constexpr double first_step = 0.005;
 constexpr long closings_of_a_factor = 40;
-constexpr double periods_of_step = 5;  // simulated time of a step that closes a switch, in periods of the first mode
 constexpr double probability = 0.95;
 
 constexpr double unknown = Metrics::unset;
@@ -69,7 +68,7 @@ std::vector<FigureMeter> instruments(const PreparedScene& nominal, const PullInM
   const std::vector<double> bias = bias_of(nominal.scene, electrode);
   std::vector<FigureMeter> all{
       {"Vdp", "V", options.pull_in_error, [&meter](const Switch& m) { return meter.exact(m).volts * meter.pull_in(); }}};
-  const double duration = periods_of_step / meter.frequency();
+  const double duration = periods_to_close / meter.frequency();
   const auto add = [&](std::string name, double error, const Instrument& instrument) {
     all.push_back({std::move(name), std::string(row_of(instrument.what).unit), error,
                    [=](const Switch& m) { return read(instrument, m, bias, duration); }});

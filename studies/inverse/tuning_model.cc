@@ -222,15 +222,12 @@ TuningModel::TuningModel(const SceneFile& file, const TunerOptions& options, con
   drives_ = std::make_unique<const DeviceDrives>(nominal_);
   const std::vector<Signal> signals = nominal_.applied(nominal_.waveforms(plain_step(nominal_, options.actuator)));
   const double longest = periods_to_close * 2 * std::numbers::pi / nominal_.model.basis().angular_frequencies()[0];
-  // The connection of several contacts may close later than the first of them: simulate beyond first contact.
-  const double after_contact = nominal_.model.contacts() > 1 ? longest : 0;
-  const Trajectory closing = simulate_closing(
-      nominal_.model, signals,
-      {.duration = longest, .tolerance = nominal_.tolerance, .after_contact = after_contact, .stop = progress.stop});
+  const double closing_time =
+      first_closing(nominal_.model, signals, {.duration = longest, .tolerance = nominal_.tolerance, .stop = progress.stop});
   progress.throw_if_stopped();
-  require(!closing.touches.empty(),
+  require(std::isfinite(closing_time),
           [&] { return fmt::format("{}: the hold levels must close the switch, but do not", file.name()); });
-  scales_ = {.closing_time = closing.touches.front().begin,
+  scales_ = {.closing_time = closing_time,
              .gap = nominal_.scene.device.contact_gap(),
              .rebound = nominal_.scene.metrics.significant_rebound};
   if (stable_approach(nominal_, options.actuator)) {

@@ -115,6 +115,16 @@ TEST(Measurements, KeepWhatIsJudgedWhenStopped_optimized) {
   EXPECT_THROW(static_cast<void>(identify(recipe(), quick(1), progress)), Interrupted);
 }
 
+TEST(Measurements, OfTwoContactsHoldTheClosingTimesOfTheirConnection_optimized) {
+  const SceneFile file =
+      scene("new/two-contacts.toml", {"waveform.main={family=\"pulse\", levels=[\"1.3 Vdp\", \"0 V\", \"1.25 Vdp\"], "
+                                      "times=[\"4 us\", \"5 us\"], edge=\"0.5 us\"}",
+                                      "structure.modes=1", "simulate.accuracy=1e-3"});
+  const IdentificationStudy found = identify(file, {.samples = 16, .jobs = 2, .steps = {1.25}});
+  EXPECT_EQ(found.figures.back().name, "time at 1.25 Vdp");
+  EXPECT_TRUE(std::ranges::all_of(found.figures.back().values, [](double time) { return std::isfinite(time); }));
+}
+
 // The landing by the piezo is from softland optimize --waveform catch. The devices differ in their layers.
 TEST(Measurements, RankAPiezosUnitFirstWhereLittleElseVaries_slow) {
   const SceneFile file = gold_pzt(
