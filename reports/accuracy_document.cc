@@ -108,8 +108,7 @@ Picture picture(const AccuracyStudy& study) {
 
   // These curves show what a restart at make and break of contact costs the integrator of `simulate`, and the multistep method
   // BDF, which loses its earlier steps at every restart.
-  Chart contact = logarithmic_chart(
-      "contact", "With and without a restart at make and break of contact: largest relative error of " + figures, time, "s", 260);
+  Chart contact = logarithmic_chart("contact", "Largest relative error, with and without restarts at contact", time, "s", 260);
   contact.caption = restart_text(study);
   std::size_t pen = 0;
   for (const Integrator integrator : {own, Integrator::bdf}) {

@@ -28,7 +28,7 @@ struct AccuracyRequest : Usual {
       about = "compare integrators and their settings: errors of the figures against computing time", python = "accuracy",
       leaves = "folder for report.html, accuracy.svg and accuracy.json",
       remarks =
-          "A combination of integrator and setting that takes more than 2 s per closing is stopped, and listed as such.\n"
+          "A combination of integrator and setting that takes more than 2 s of processor time per closing is stopped, and listed as such.\n"
           "Example:\n  softland accuracy scenes/mem-gold.toml --set simulate.duration=\"100 us\" --out accuracy";
   static std::vector<std::string> files() { return {"report.html", "accuracy.svg", "accuracy.json"}; }
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_accuracy(json)); }

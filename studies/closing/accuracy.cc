@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include "base/engineering.h"
 #include "objectives/figure_values.h"
@@ -115,11 +114,11 @@ class Study {
     std::vector<double> seconds;
     for (double spent = 0; row.runs < runs && spent < enough_seconds; ++row.runs) {
       start = options_.clock();
-      const std::clock_t begin = std::clock();
+      const double begin = processor_seconds();
       const Trajectory t = simulate_closing(model, signals_, closing_options);
-      seconds.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+      seconds.push_back(processor_seconds() - begin);
       if (cut) {
-        row.missing = fmt::format("cut after {:.2g} s", most_seconds);
+        row.missing = fmt::format("cut after {:.2g} s of processor time", most_seconds);
         return;
       }
       spent += seconds.back();
@@ -148,7 +147,8 @@ class Study {
     if (seconds_since(start_) < options_.all_seconds) {
       measure(model, row, options_.runs, options_.most_seconds);
     } else {
-      row.missing = fmt::format("not tried: the time limit of the study, {:g} s, is over", options_.all_seconds);
+      row.missing =
+          fmt::format("not tried: the time limit of the study, {:g} s of processor time, is over", options_.all_seconds);
     }
     progress();
   }
@@ -161,7 +161,7 @@ class Study {
       row.tolerance = tolerance;
       if (cut) {
         progress();
-        row.missing = fmt::format("not tried: a looser tolerance took more than {:g} s", options_.most_seconds);
+        row.missing = fmt::format("not tried: a looser tolerance took more than {:g} s of processor time", options_.most_seconds);
       } else if (tolerance < tightest_ ||
                  (row.points_per_length && 2 * *row.points_per_length > found_.reference.points_per_length)) {
         progress();
@@ -233,7 +233,7 @@ class Study {
     reference.errors = {};
     if (const double planned = reference_tighter * options_.tolerances.back(); reference.tolerance > told_apart * planned) {
       found_.message = fmt::format(
-          "a tolerance of {} would take more than {:g} s, or fails: settings that this one cannot judge are not tried",
+          "a tolerance of {} would take more than {:g} s of processor time, or fails: settings that this one cannot judge are not tried",
           engineering(reference.tolerance / reference_looser, "", 1), options_.reference_seconds);
     }
     tightest_ = options_.tolerances.back();

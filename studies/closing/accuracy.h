@@ -19,11 +19,11 @@
 #include <string>
 #include <vector>
 
-#include "base/clock.h"
 #include "model/closing.h"
 #include "objectives/figure_values.h"
 #include "studies/closing/cloud.h"
 #include "studies/closing/prepared.h"
+#include "studies/closing/timing.h"
 
 namespace softland {
 
@@ -40,15 +40,17 @@ struct AccuracyOptions {
   std::vector<double> points{6, 8, 12, 16, 24, 48};  ///< numbers of quadrature points over the beam's length, ascending
   /// Accuracies (relative errors of figures) for each of which a setting is recommended.
   std::vector<double> wanted{1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
-  int runs = 7;             ///< number of timed runs of a setting, whose median is reported; fewer if the runs take long
-  double most_seconds = 2;  ///< time limit for one closing [s]; a longer closing is stopped, and tighter tolerances are skipped
-  /// Time limit for the reference runs [s], in order from loose to tight; later runs are skipped.
+  int runs = 7;  ///< number of timed runs of a setting, whose median is reported; fewer if the runs take long
+  /// Limit of `clock` for one closing [s]; a longer closing is stopped, and tighter tolerances are skipped.
+  double most_seconds = 2;
+  /// Limit of `clock` for the reference runs [s], in order from loose to tight; later runs are skipped.
   double reference_seconds = 10;
-  double all_seconds = 15;  ///< time limit for all runs other than references [s]; later settings are skipped
+  double all_seconds = 15;  ///< limit of `clock` for all runs other than references [s]; later settings are skipped
   std::function<void(std::size_t done, std::size_t of)> on_progress = {};
   const std::atomic<bool>* stop = nullptr;
-  /// Clock that measures the time limits [s]; it is read once in 64 steps of the integrator.
-  std::function<double()> clock = wall_clock;
+  /// Clock that measures the time limits [s]; it is read once in 64 steps of the integrator. The processor time of the thread
+  /// does not depend on what else the machine computes.
+  std::function<double()> clock = processor_seconds;
 };
 
 /// One setting of the integrator and the discretisation, with its results.

@@ -154,6 +154,19 @@ TEST(AccuracyPage, HoldsRecommendationsDiagramsTablesAndClouds) {
   EXPECT_THAT(page_html(document_of(asked)), HasSubstr("<h1>No figure is well-conditioned here"));
 }
 
+// A title of the page's text size, with some 7 px for a letter, fits into the width of a chart.
+TEST(AccuracyPicture, HasTitlesThatFitIntoThePage) {
+  AccuracyStudy study = sample();
+  study.conditioned.fill(true);
+  const std::string svg = svg_of(record(study));
+  constexpr std::size_t widest = 75;
+  for (const char* title : {"Largest relative error of ", "Largest relative error, with and without ", "Quadrature: "}) {
+    const std::size_t begin = svg.find(title);
+    ASSERT_NE(begin, std::string::npos) << title;
+    EXPECT_LT(svg.find('<', begin) - begin, widest);
+  }
+}
+
 TEST(AccuracyPicture, IsWellFormedAndHasACurveForWhateverHasErrors) {
   AccuracyRecord named = record(sample());
   named.origin.scene["title"] = "Gold & more";

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include "scenes.h"
 #include "studies/closing/simulate.h"
@@ -151,7 +153,8 @@ TEST(Accuracy, StopsSlowSettingsAndListsThem) {
   const AccuracyStudy slow = study_accuracy(first_bounces(), options);
   EXPECT_EQ(slow.status, Status::done) << "the reference has a bound of its own";
   for (const AccuracyRow& row : slow.rows) {
-    EXPECT_EQ(row.missing, row.tolerance == 1e-4 ? "cut after 0 s" : "not tried: a looser tolerance took more than 0 s");
+    EXPECT_EQ(row.missing, row.tolerance == 1e-4 ? "cut after 0 s of processor time"
+                                                 : "not tried: a looser tolerance took more than 0 s of processor time");
     EXPECT_TRUE(std::isnan(slow.worst_error(row)));
   }
   for (const Recommendation& r : slow.recommendations) EXPECT_FALSE(r.row) << r.accuracy;
@@ -165,8 +168,17 @@ TEST(Accuracy, StopsSlowSettingsAndListsThem) {
   options.reference_seconds = 0;
   const AccuracyStudy none = study_accuracy(first_bounces(), options);
   EXPECT_EQ(none.status, Status::numerical_failure);
-  EXPECT_EQ(none.message, "cut after 0 s");
+  EXPECT_EQ(none.message, "cut after 0 s of processor time");
   EXPECT_TRUE(none.rows.empty());
+}
+
+// What else the machine computes stops no run: the limits do not count the time in which the thread waits.
+TEST(Accuracy, LimitsCountTheProcessorTimeOfTheThread) {
+  constexpr std::chrono::milliseconds waited{60};
+  const AccuracyOptions options;
+  const double start = options.clock();
+  std::this_thread::sleep_for(waited);
+  EXPECT_LT(options.clock() - start, 0.5 * std::chrono::duration<double>(waited).count());
 }
 
 TEST(Accuracy, ReportsItsProgressAndCanBeStopped) {
