@@ -71,7 +71,10 @@ void options(Archive& a, TuneVerb& r) {
   TunerOptions& t = r.tuner;
   a.program().text("device", r.device, "COMMAND",
                    "shell command that fires the shots: it reads one JSON object a line, and answers each by one line");
-  a.program().flag("by-hand", r.by_hand, "write each waveform to a file, and ask what the oscilloscope recorded");
+  a.program().flag(
+      "by-hand", r.by_hand,
+      "write each waveform to a file, and ask what the oscilloscope recorded; every question lists its answers, such as \"never\" "
+      "for a contact that stayed open and \"?\" for an unknown number of openings");
   a.program().text(
       "format", r.format, "NAME",
       "with --by-hand, format of the files: csv (default), spice-pwl, codes, keysight-arb, siglent-csv, tektronix-csv, "

@@ -285,6 +285,10 @@ TEST_F(TuneVerb, EndsItsDeviceWhenItIsInterrupted_optimized) {
   EXPECT_EQ(tune_json()["status"], "interrupted");
 }
 
+TEST_F(TuneVerb, HelpNamesTheAnswerOfWhoDoesNotKnow) {
+  EXPECT_THAT(here.run({"tune", "--help"}).out, HasSubstr("\"?\" for an unknown number of openings"));
+}
+
 // Invalid answers are refused with a message, and asked for again.
 TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
   write(here.path() / "edges.csv", "time_s,closed\n2e-05,1\n2.2e-05,0\n2.4e-05,1\n");
