@@ -125,7 +125,8 @@ int run_study(const verbs::Study& study, const Common& c, const verbs::Arguments
                                const PreparedScene& nominal) { return waveforms_of(result, nominal, progress); },
            .text = [&] { return c.set.empty() ? read_file(c.scene) : file.text(); },
            .note = c.quiet ? std::function<void(const std::string&)>()
-                           : [](const std::string& line) { print_note(with_fields(line, "--")); }});
+                           : [](const std::string& line) { print_note(with_fields(line, "--")); },
+           .leaves_files = folder.has_value()});
   work.reset();
   if (folder && !found.files.empty()) found.text += leave(*folder, found);
   print_json_or(c, found.json, found.text + found.last);

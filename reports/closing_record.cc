@@ -58,7 +58,7 @@ std::map<std::string, Points> waveforms(const PreparedScene& p) {
   return all;
 }
 
-RunRecord run(const PreparedScene& p, const Closing& closing, const MetricsOptions& options) {
+RunRecord run(const PreparedScene& p, const Closing& closing, const MetricsOptions& options, bool shows_motion = true) {
   FigureValues figures(closing.metrics), errors = closing.errors;
   figures.asked = options.asked;
   figures.asked.opening = closing.metrics.asked.opening;
@@ -68,7 +68,7 @@ RunRecord run(const PreparedScene& p, const Closing& closing, const MetricsOptio
   curve.resistance = resistance_course(p.scene.device, closing.trajectory, curve.time);
   curve.closed = closed_stretches(closing.trajectory.touches);
   for (const ContactOutcome& own : closing.trajectory.contacts) curve.closed_contacts[own.name] = closed_stretches(own.touches);
-  curve.motion = shown_motion(p, closing);
+  if (shows_motion) curve.motion = shown_motion(p, closing);
   return {.status = std::string(to_string(closing.metrics.status)),
           .figures = finite(figures),
           .errors = finite(errors),
@@ -212,11 +212,11 @@ Points drawn_evaluations(Points all) {
   return kept;
 }
 
-ClosingRecord record_of(const PreparedScene& prepared, const Closing& closing, const std::string& command) {
+ClosingRecord record_of(const PreparedScene& prepared, const Closing& closing, const std::string& command, bool shows_motion) {
   ClosingRecord r = begun("simulate", prepared, command);
   r.status = to_string(closing.metrics.status);
   r.message = closing.trajectory.message;
-  r.best = run(prepared, closing, prepared.scene.metrics);
+  r.best = run(prepared, closing, prepared.scene.metrics, shows_motion);
   r.contacts = contacts(prepared.scene.device, closing);
   if (closing.certificate) r.certificate = *closing.certificate;
   r.pull_in = pull_in(prepared);

@@ -80,8 +80,9 @@ struct ClosingRecord {
 [[nodiscard]] Points drawn_evaluations(Points all);
 
 /// Makes the results of `simulate`; `command` is the command line. Curves have the resolution of the integration, up to
-/// most_curve_rows.
-[[nodiscard]] ClosingRecord record_of(const PreparedScene& prepared, const Closing& closing, const std::string& command);
+/// most_curve_rows. With `shows_motion` the closing is simulated once more for the animation of the page.
+[[nodiscard]] ClosingRecord record_of(const PreparedScene& prepared, const Closing& closing, const std::string& command,
+                                      bool shows_motion = true);
 
 /// Makes the results of `optimize`. Equal seeds give equal results, apart from the elapsed time and the command line. The
 /// results have only the evaluations that improved the best cost.

@@ -27,7 +27,7 @@ std::string words(const DriverModel& source) {
 }
 
 std::string clause(const PreparedScene& p, const Closing& closing) {
-  return internal::closing_clause({.subject = "the switch"}, record_of(p, closing, {}).best, p.duration);
+  return internal::closing_clause({.subject = "the switch"}, record_of(p, closing, {}, false).best, p.duration);
 }
 
 // Returns true if the closing under the samples of a waveform does not settle although the closing under the scene's waveform

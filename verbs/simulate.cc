@@ -56,7 +56,7 @@ std::string time_saved(const PreparedScene& chosen) {
 
 Outcome run(const Setting& setting, const SimulateVerb& request) {
   const auto [prepared, closing] = simulated(setting.prepared(false), request, setting.progress);
-  const auto result = std::make_shared<const ClosingRecord>(record_of(*prepared, closing, setting.command));
+  const auto result = std::make_shared<const ClosingRecord>(record_of(*prepared, closing, setting.command, setting.leaves_files));
   const Status status = closing.metrics.status;
   Outcome outcome = closing_shown(result);
   outcome.fault =

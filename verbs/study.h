@@ -60,6 +60,7 @@ struct Setting {
   /// Function that receives a line about the scene or the result while the verb runs; may be empty. The names of options in the
   /// line are marked by requested().
   std::function<void(const std::string&)> note = {};
+  bool leaves_files = true;  ///< false: nobody reads Outcome::files, so that a verb may leave out what only they need
 };
 
 /// The general options that a verb takes, and their descriptions.

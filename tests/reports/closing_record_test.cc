@@ -65,6 +65,16 @@ TEST(ResultOf, EachOfSeveralContactsHasItsFigures) {
     EXPECT_THAT(page, testing::HasSubstr(words));
 }
 
+TEST(ResultOf, WithoutItsMotionIsTheSameForProgramsAndTerminals) {
+  const PreparedScene prepared = prepare(shipped("mem-gold.toml", {}));
+  const Closing closing = simulate(prepared, false);
+  const ClosingRecord whole = record_of(prepared, closing, command), quick = record_of(prepared, closing, command, false);
+  EXPECT_TRUE(whole.best.curve.motion);
+  EXPECT_FALSE(quick.best.curve.motion) << "the closing is not simulated once more";
+  EXPECT_EQ(summary_json(json_of(quick)), summary_json(json_of(whole)));
+  EXPECT_EQ(terminal_text(closing_document(quick)), terminal_text(closing_document(whole)));
+}
+
 TEST(ResultOf, ItsCurvesHoldTheMotionAndWhenTheContactIsClosed) {
   const PreparedScene prepared = prepare(shipped("mem-gold.toml", {}));
   const Closing closing = simulate(prepared, false);
