@@ -42,7 +42,6 @@ void DevicesRow::inherit(const DevicesRow& other) {
                           includes(knowledge.piezo_error, known.piezo_error) && includes(knowledge.time_error, known.time_error);
   if (!knows_more || !has_better_yield(other, *this)) return;
   judged = other.judged;
-  judged_whole = other.judged_whole;
   searched_for_it = false;
 }
 
@@ -166,12 +165,12 @@ DevicesRow RobustSearch::row_of(const char* name, const DriveWaveforms& waveform
                                 bool searched_for_it) {
   const MeasuredUnits known = measured_units(first().given, std::array{knowledge}, options_.jobs, progress_).front();
   const RobustCost fresh = verdict_devices(known);
-  std::vector<DeviceOutcome> outcomes = closed(fresh, waveforms);
+  budget_.took(static_cast<long>(fresh.devices()));
+  std::vector<DeviceOutcome> outcomes = fresh.close_until(first().drives(waveforms), free_.until, options_.jobs);
   progress_.throw_if_stopped();
   return {.name = name,
           .knowledge = knowledge,
           .searched_for_it = searched_for_it,
-          .judged_whole = false,
           .judged = internal::summarised({.name = name, .waveforms = all_drives(waveforms), .calibration = knowledge}, known,
                                          std::move(outcomes))};
 }

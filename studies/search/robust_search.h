@@ -64,8 +64,6 @@ struct DevicesRow {
   std::string name;             ///< name of the row: "plain step", "for the drawing", "for the devices", "Vdp to 1 %"
   Calibration knowledge = {};   ///< measured quantities by which each device's waveform is scaled
   bool searched_for_it = true;  ///< false: the waveform was searched for another calibration than `knowledge`
-  /// True: the closings were simulated over the scene's whole simulated time; false: over the shorter time of a search.
-  bool judged_whole = true;
   DriveRobustness judged = {};
 
   /// Takes the results of the row `other`, if its devices close better and `other` needs no better calibration than this row.

@@ -9,9 +9,8 @@
 //   4  Searches with a per-device calibration: Vdp to 1 %, and the closing time of one slow step to 50 ns. Vdp and period to
 //      0.2 % replace the closing time if the switch is too quick. A calibrated search is repeated under conditions if its
 //      result closes harder than the plain step.
-//   5  Evaluation on 2000 fresh devices (500 or more if closings are slow): plain step, nominal design's waveform and best
-//      waveform over the whole simulated time. Rows with a calibration use a shorter time, which moves 95th percentiles by less
-//      than 0.4 %.
+//   5  Evaluation on 2000 fresh devices (500 or more if closings are slow): plain step, nominal design's waveform, best waveform
+//      and rows with a calibration, over the whole simulated time.
 //
 // The best waveform, if a drive can move the switch to its contact through stable equilibria (stable_approach.h): candidates
 // must not be worse than the plain step, nor leave more than 0.5 % more devices open. Of the candidates that cost at most 5 %

@@ -31,8 +31,6 @@ DevicesFindings::Row told(const DevicesRow& row) {
                          .collapsed = drive.collapsed.value};
   for (const Figure& f : device_figures) {
     if (f.asked != nullptr && drive.figures[f].devices == 0) continue;
-    const bool needs_the_end = f.key == key_of(&Metrics::steady_force_time) || f.key == key_of(&Metrics::permanent_contact_time);
-    if (needs_the_end && !row.judged_whole) continue;
     const auto& quantiles = drive.figures[f].quantiles;
     const std::string key(f.key);
     r.at_50[key] = quantiles[1].value, r.at_95[key] = quantiles[2].value, r.at_99[key] = quantiles[3].value;

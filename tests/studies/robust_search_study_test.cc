@@ -81,6 +81,8 @@ TEST(RobustSearchStudy, IsSofterThanThePlainStepAndTheNominalDesign_optimized) {
   const bool by_time = found.findings.measured == "closing time to 50 ns";
   EXPECT_EQ(found.calibrated->written(by_time ? "calibration.time.error" : "calibration.Vdp.error"), by_time ? "50 ns" : "1 %");
   EXPECT_LT(cost_of(found, "closing time to 50 ns"), cost_of(found, "for the devices"));
+  for (const DevicesFindings::Row& row : found.findings.rows)
+    EXPECT_TRUE(row.at_95.contains(std::string(key_of(&Metrics::steady_force_time)))) << row.name;
   // More measurements on the devices do not increase the impact velocity.
   const auto speed = [&](std::string_view row) { return cost_of(found, row); };
   for (const char* measured : {"Vdp to 1 %", "Vdp and period to 1 %", "Vdp and period to 0.2 %", "closing time to 50 ns"})
