@@ -347,12 +347,15 @@ EnsembleDrive exactly_measured(const PreparedScene& nominal, const DriveRobustne
           .known = drive.known.without_errors()};
 }
 
+void set_window(SceneFile& file, double window) {
+  file.assign("simulate.duration", Quantity{.value = window, .dimension = dimension::time});
+}
+
 SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive, const std::vector<double>& values,
                           std::uint64_t seed, std::size_t device) {
   const PreparedScene& nominal = ensemble.nominal();
   SceneFile file = ensemble.scene(values);
-  if (const double window = window_of(nominal); window > nominal.duration)
-    file.assign("simulate.duration", Quantity{.value = window, .dimension = dimension::time});
+  if (const double window = window_of(nominal); window > nominal.duration) set_window(file, window);
   DeviceUnits units;
   if (const Calibration& calibration = drive.known.calibration(); !calibration.is_empty()) {
     const SampledDevice sampled = DeviceBuilder(ensemble).device(values);

@@ -150,6 +150,8 @@ struct NamedDrive {
 /// Returns the simulated time in which these commanded signals end, and in which the contact settles afterwards; at least that of
 /// `nominal` [s].
 [[nodiscard]] double window_for(const PreparedScene& nominal, std::span<const Signal> commanded);
+/// Sets the simulated time of a scene [s].
+void set_window(SceneFile& file, double window);
 
 namespace internal {
 

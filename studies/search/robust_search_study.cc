@@ -281,10 +281,9 @@ class RobustSearchStudy {
   [[nodiscard]] PreparedScene over_whole_window(PreparedScene given) const {
     double window = whole_window({});
     for (const DeviceChoice& one : result_->choices) window = std::max(window, whole_window(one.candidate.waveforms));
-    if (window > given.duration) {
-      given.duration = given.scene.simulate.duration = window;
-      give_time(given.scene.file, window);
-    }
+    if (window <= given.duration) return given;
+    given.duration = given.scene.simulate.duration = window;
+    set_window(given.scene.file, window);
     return given;
   }
 
@@ -294,10 +293,6 @@ class RobustSearchStudy {
     const double needed = window_for(given, given.commanded(first().drives(waveforms))), bounces = 1.2 * searched_.free().until;
     const double window = std::max(needed, bounces), digits = std::pow(10, std::floor(std::log10(window)) - 1);
     return window > given.duration ? std::ceil(window / digits) * digits : window;
-  }
-
-  static void give_time(SceneFile& file, double window) {
-    file.assign("simulate.duration", Quantity{.value = window, .dimension = dimension::time});
   }
 
   void add(const CalibratedSearch& measured) {
@@ -318,7 +313,7 @@ class RobustSearchStudy {
     findings().measured = best.name;
     result_->calibrated = with_waveforms(result_->nominal.baseline_scene, measured.best_waveforms);
     if (const double window = whole_window(measured.best_waveforms); window > first().given.duration)
-      give_time(*result_->calibrated, window);
+      set_window(*result_->calibrated, window);
     result_->calibrated->set(best.knowledge.time_error ? fmt::format("calibration.{}.error=\"50 ns\"", measured_time)
                                                        : fmt::format("calibration.{}.error=\"1 %\"", measured_pull_in));
   }
@@ -453,7 +448,7 @@ class RobustSearchStudy {
   // Returns the nominal scene with these waveforms in volts, over the simulated time of the final evaluation.
   [[nodiscard]] SceneFile scene_of(const DriveWaveforms& waveforms) const {
     SceneFile file = with_waveforms(result_->nominal.baseline_scene, waveforms);
-    if (result_->varied.duration > first().given.duration) give_time(file, result_->varied.duration);
+    if (result_->varied.duration > first().given.duration) set_window(file, result_->varied.duration);
     return file;
   }
 
