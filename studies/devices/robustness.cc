@@ -313,6 +313,10 @@ double window_for(const PreparedScene& nominal, std::span<const Signal> commande
   return std::max(own, last + periods * nominal.model.basis().in_contact_period() + (last > own ? slower * last : 0));
 }
 
+void set_window(SceneFile& file, double window) {
+  file.assign("simulate.duration", Quantity{.value = window, .dimension = dimension::time});
+}
+
 namespace internal {
 namespace {
 
@@ -345,10 +349,6 @@ EnsembleRun run_of(const PreparedScene& nominal, const RobustnessOptions& option
 EnsembleDrive exactly_measured(const PreparedScene& nominal, const DriveRobustness& drive) {
   return {.waveforms = waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms}),
           .known = drive.known.without_errors()};
-}
-
-void set_window(SceneFile& file, double window) {
-  file.assign("simulate.duration", Quantity{.value = window, .dimension = dimension::time});
 }
 
 SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive, const std::vector<double>& values,

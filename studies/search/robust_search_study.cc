@@ -282,8 +282,7 @@ class RobustSearchStudy {
     double window = whole_window({});
     for (const DeviceChoice& one : result_->choices) window = std::max(window, whole_window(one.candidate.waveforms));
     if (window <= given.duration) return given;
-    given.duration = given.scene.simulate.duration = window;
-    set_window(given.scene.file, window);
+    set_window(given.scene.file, given.duration = given.scene.simulate.duration = window);
     return given;
   }
 
