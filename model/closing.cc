@@ -287,22 +287,16 @@ class ClosingRun {
     }
     std::vector<ForceOutcome> forces;
     for (const FollowedContact& c : parts_.contacts) {
-      const bool touched = c.touches.count() > 0;
       ContactOutcome own{.name = model_.has_contact() ? model_.device().contacts[c.number].name : std::string(),
                          .gap = c.plane,
                          .deepest_penetration = c.touches.deepest_penetration()};
-      if (touched) {
-        own.steady_force_time = c.force.steady_from();
-        own.least_force_after_touch = c.force.least();
-      }
-      forces.push_back({own.steady_force_time, own.least_force_after_touch});
+      if (c.touches.count() > 0) own.force = c.force.outcome();
+      forces.push_back(own.force);
       if (parts_.electrical) own.electrical = parts_.electrical->contact(c.number);
       out_.deepest_penetration = std::max(out_.deepest_penetration, own.deepest_penetration);
       if (parts_.connection) out_.contacts.push_back(std::move(own));
     }
-    const auto [steady, least] = force_of_connection(model_.device(), forces);
-    out_.steady_force_time = steady;
-    out_.least_force_after_touch = least;
+    out_.force = force_of_connection(model_.device(), forces);
     if (!parts_.connection) return;
     parts_.connection->finish();
     out_.first_touch = parts_.connection->first_touch();

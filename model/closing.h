@@ -66,7 +66,7 @@ struct ClosingOptions {
   /// Potential of the closed equilibrium under the hold levels [J]; if given, Trajectory::landing_excess is computed relative
   /// to this potential.
   double closed_potential = std::numeric_limits<double>::quiet_NaN();
-  /// Contact force above which the force counts as steady [N]; if given, Trajectory::steady_force_time is computed.
+  /// Contact force above which the force counts as steady [N]; if given, ForceOutcome::steady_force_time is computed.
   double steady_force = std::numeric_limits<double>::quiet_NaN();
   /// Modal coordinates [m kg^(1/2)] of a closed equilibrium under the drives' voltages before t = 0; if given, the run begins
   /// in this equilibrium. The contact at the start counts as a touch that began at t = 0 with impact velocity 0.
@@ -75,7 +75,7 @@ struct ClosingOptions {
   /// drives' voltages before t = 0.
   StartState start = StartState::open;
   /// Time at which the drives command a closed switch to open [s]. Figures of the closing, such as
-  /// Trajectory::steady_force_time and the electrical state, describe the motion before opens_at.
+  /// ForceOutcome::steady_force_time and the electrical state, describe the motion before opens_at.
   double opens_at = std::numeric_limits<double>::infinity();
   const std::atomic<bool>* stop = nullptr;  ///< set by another thread; ends the run as `interrupted`
   /// Called after every step with time [s], modal coordinates q and velocities v; the states of a compressible film follow v in

@@ -33,6 +33,15 @@ struct Touch {
   /// Largest pressure of the highest asperity summit over its hardness (model/contact/summit_pressure.h); NaN unless both are
   /// known.
   double pressure = std::numeric_limits<double>::quiet_NaN();
+
+  /// Adds another touch, of this or another contact: its energy, and its velocity, force and pressure where they are larger.
+  void add(const Touch& other) {
+    impact_velocity = std::fmax(impact_velocity, other.impact_velocity);
+    // The largest force is NaN when that of one touch is NaN, for a rigid contact.
+    if (std::isnan(other.peak_force) || other.peak_force > peak_force) peak_force = other.peak_force;
+    peak_energy += other.peak_energy;
+    pressure = std::fmax(pressure, other.pressure);
+  }
 };
 
 /// The first touch of a contact, or of any contact that makes an electrical connection.
@@ -73,6 +82,17 @@ struct ElectricalOutcome {
   int openings = 0;  ///< number of electrical openings after first_closed that are longer than ElectricalClosing::after
 };
 
+/// Figures of merit of the contact force after first contact. ForceRecord computes them, and force_of_connection() combines
+/// those of several contacts.
+struct ForceOutcome {
+  /// Time from which the contact force stays at or above ClosingOptions::steady_force until the end of the run [s]. NaN when
+  /// the force is below steady_force at the end, without a touch, and when no steady force was given.
+  double steady_force_time = std::numeric_limits<double>::quiet_NaN();
+  /// Least contact force from its first maximum after the first touch to the end of the run; the force at the end when the
+  /// force only rises [N]. NaN without a touch.
+  double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// The outcome of one contact of several, at the end of a run.
 struct ContactOutcome {
   std::string name;
@@ -82,10 +102,7 @@ struct ContactOutcome {
   double deepest_penetration = 0;  ///< largest penetration: motion of the contact point beyond the contact plane [m]
   /// Contact force in the closed equilibrium under the hold levels of the drives [N].
   double hold_force = std::numeric_limits<double>::quiet_NaN();
-  /// Time from which the contact force stays at or above ClosingOptions::steady_force [s].
-  double steady_force_time = std::numeric_limits<double>::quiet_NaN();
-  /// Least contact force after its first maximum [N].
-  double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
+  ForceOutcome force = {};
   /// Contact resistance at rest under the hold levels of the drives [Ohm].
   double hold_resistance = std::numeric_limits<double>::quiet_NaN();
   ElectricalOutcome electrical = {};
@@ -125,12 +142,7 @@ struct Trajectory {
   /// on a rigid contact have dissipated until then.
   double landing_excess = std::numeric_limits<double>::quiet_NaN();
   double deepest_penetration = 0;  ///< largest penetration of the contact [m]
-  /// Time from which the contact force stays at or above ClosingOptions::steady_force until the end of the run [s]. NaN when
-  /// the force is below steady_force at the end, without a touch, and when no steady force was given.
-  double steady_force_time = std::numeric_limits<double>::quiet_NaN();
-  /// Least contact force from its first maximum after the first touch to the end of the run; the force at the end when the
-  /// force only rises [N]. NaN without a touch.
-  double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
+  ForceOutcome force = {};
   /// Outcomes of all contacts of a switch with several contacts; empty for a single contact.
   std::vector<ContactOutcome> contacts;
   /// First touch of any of several contacts that makes the connection; unset for a single contact.

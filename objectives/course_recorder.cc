@@ -61,8 +61,7 @@ Metrics CourseRecorder::metrics_of(std::size_t contact, const Trajectory& end) {
   alone.contact_gap = own.gap;
   alone.hold_force = own.hold_force;
   alone.is_held = own.hold_force > 0;
-  alone.steady_force_time = own.steady_force_time;
-  alone.least_force_after_touch = own.least_force_after_touch;
+  alone.force = own.force;
   alone.hold_resistance = own.hold_resistance;
   alone.electrical = own.electrical;
   alone.landing_excess = Metrics::unset;

@@ -57,7 +57,7 @@ CycleFigures CycleRecorder::figures(std::size_t cycle, const Trajectory& run) {
   Trajectory alone = run;
   alone.status = Status::done;
   alone.contacts.clear();
-  alone.steady_force_time = alone.least_force_after_touch = Metrics::unset;
+  alone.force = {};
   alone.energy.source_work =
       std::isnan(own.source_work) && counted_ == cycle ? run.energy.source_work - work_before_ : own.source_work;
   alone.layer_energy = 0;

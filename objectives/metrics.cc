@@ -17,11 +17,7 @@ std::vector<Rebound> rebounds(const Trajectory& trajectory) {
 
 void LandingFigures::touch(const Touch& touch) {
   touched_ = true;
-  // The peak force of the run must be NaN when that of a touch is NaN (rigid contact); std::max would drop the NaN.
-  if (std::isnan(touch.peak_force) || touch.peak_force > peak_force_) peak_force_ = touch.peak_force;
-  impact_energy_ += touch.peak_energy;
-  largest_impact_velocity_ = std::max(largest_impact_velocity_, touch.impact_velocity);
-  pressure_ = std::fmax(pressure_, touch.pressure);
+  touches_.add(touch);
 }
 
 void LandingFigures::rebound(const Rebound& rebound) {
@@ -103,7 +99,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
     result.initial_contact_time = first.time;
     result.impact_velocity = first.velocity;
   }
-  if (touched_ && !end.began_closed) result.largest_impact_velocity = largest_impact_velocity_;
+  if (touched_ && !end.began_closed) result.largest_impact_velocity = touches_.impact_velocity;
   if (!ran_to_the_end || !sound) return result;
 
   result.drive_energy = end.energy.source_work + end.layer_energy;
@@ -125,11 +121,10 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   result.electrical_settling = end.electrical.closed_from;
   result.electrical_bounces = end.electrical.openings;
   if (touched_) {
-    result.peak_contact_force = peak_force_;
-    result.impact_energy = impact_energy_;
-    result.pressure = pressure_;
-    result.steady_force_time = end.steady_force_time;
-    result.least_force_after_touch = end.least_force_after_touch;
+    result.peak_contact_force = touches_.peak_force;
+    result.impact_energy = touches_.peak_energy;
+    result.pressure = touches_.pressure;
+    static_cast<ForceOutcome&>(result) = end.force;
   }
 
   result.major_bounce_height = highest_;

@@ -45,7 +45,8 @@ struct MetricsOptions {
   TransferOptions transfer = {};  ///< load circuit for the transferred charge; set when Device::load is given
 };
 
-struct Metrics {
+/// Figures of merit of a closing; those of the contact force are members of the base.
+struct Metrics : ForceOutcome {
   static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
   Status status = Status::not_run;
@@ -59,11 +60,8 @@ struct Metrics {
   double peak_contact_force = unset;      ///< largest contact force of the run [N]
   double impact_energy = unset;           ///< sum over touches of the largest stored contact energy [J]
   double hold_force = unset;              ///< contact force in the closed equilibrium under the hold levels of the drives [N]
-  /// Time from which the contact force stays at or above MetricsOptions::steady_force times the hold force [s].
-  double steady_force_time = unset;
-  double least_force_after_touch = unset;  ///< least contact force after its first maximum [N]
-  double capacitance = unset;              ///< capacitance of beam and electrode at rest under the hold levels [F]
-  double drive_energy = unset;             ///< energy that the drives give in the run [J]
+  double capacitance = unset;             ///< capacitance of beam and electrode at rest under the hold levels [F]
+  double drive_energy = unset;            ///< energy that the drives give in the run [J]
   bool settled = false;
   double resistance = unset;           ///< contact resistance at rest under the hold levels [Ohm]
   double electrical_contact = unset;   ///< time at which the switch first closes electrically [s]
@@ -147,7 +145,7 @@ class LandingFigures {
   Rebound latest_ = {};
   int significant_ = 0;
   bool touched_ = false;
-  double peak_force_ = 0, impact_energy_ = 0, largest_impact_velocity_ = 0, pressure_ = Metrics::unset;
+  Touch touches_;  // all touches together
 };
 
 /// Computes the figures of merit of a closing while it runs, without storing the motion.

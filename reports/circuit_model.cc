@@ -30,9 +30,7 @@ namespace softland {
 namespace {
 
 template <class Law>
-constexpr bool only_pushes =
-    std::is_same_v<Law, UniformAsperityContact> || std::is_same_v<Law, LinearContact> ||
-    std::is_same_v<Law, HuntCrossley<LinearContact>> || std::is_same_v<Law, HuntCrossley<UniformAsperityContact>>;
+constexpr bool only_pushes = InvertibleContact<Law> || is_damped_invertible<Law>;
 
 // A dialect writes operands of formulas in one language, SPICE or Verilog-A.
 struct Dialect {
@@ -392,15 +390,14 @@ std::string why_no_circuit(const Switch& model) {
       "fringing by bao-2001 (its charge is an integral)");
   add(std::ranges::any_of(device.electrodes, [](const Electrode& e) { return e.dielectric.has_value(); }),
       "a dielectric on an electrode");
-  const auto only_pushes_law = [&](std::size_t c) {
-    return std::visit([](const auto& law) { return only_pushes<std::decay_t<decltype(law)>>; }, model.contact(c));
-  };
-  bool can_push = true;
-  for (std::size_t c = 0; c < model.contacts(); ++c) can_push = can_push && only_pushes_law(c);
   add(model.contacts() > 1, "several contacts");
   add(model.device().touches_along_pad(), "a contact along its pad");
   add(model.device().closes_along_face(), "a landing along the face of a dielectric");
-  add(!can_push, "a contact law other than linear or asperity-uniform");
+  for (std::size_t c = 0; c < model.contacts(); ++c) {
+    if (std::visit([]<class Law>(const Law&) { return only_pushes<Law>; }, model.contact(c))) continue;
+    reasons.push_back(fmt::format("the contact law {}", name_of(device.contacts[c].model)));
+    break;
+  }
   std::string all;
   for (std::size_t k = 0; k < reasons.size(); ++k) all += (k == 0 ? "" : k + 1 == reasons.size() ? " and " : ", ") + reasons[k];
   return all;

@@ -130,10 +130,7 @@ void ConnectionCourse::finish() {
 
 void ConnectionTouches::take(const Touch& touch) {
   first_touch_.take(touch.begin, touch.impact_velocity);
-  pending_.impact_velocity = std::max(pending_.impact_velocity, touch.impact_velocity);
-  pending_.peak_force = std::max(pending_.peak_force, touch.peak_force);
-  pending_.peak_energy += touch.peak_energy;
-  pending_.pressure = std::fmax(pending_.pressure, touch.pressure);
+  pending_.add(touch);
 }
 
 std::optional<Touch> ConnectionTouches::close(double time, double speed) {
@@ -145,35 +142,9 @@ std::optional<Touch> ConnectionTouches::close(double time, double speed) {
 std::optional<Touch> ConnectionTouches::finish() {
   if (!touch_) return std::nullopt;
   std::optional<Touch> last = std::exchange(touch_, std::nullopt);
-  last->impact_velocity = std::max(last->impact_velocity, pending_.impact_velocity);
-  last->peak_force = pending_.peak_force;
-  last->peak_energy = pending_.peak_energy;
-  last->pressure = pending_.pressure;
+  last->add(pending_);
   pending_ = {};
   return last;
-}
-
-ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts) {
-  if (contacts.size() == 1) return contacts.front();
-  // A connection of all contacts settles with the last of them, and its least force is the smallest of theirs. Each result is
-  // NaN if that of one contact is NaN (unknown).
-  const auto later = [](double a, double b) { return std::isnan(a) || a > b ? a : b; };
-  const auto less = [](double a, double b) { return std::isnan(a) || a < b ? a : b; };
-  std::optional<ForceOutcome> all;
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    if (!device.contacts[c].connects) continue;
-    const auto& [steady, least] = contacts[c];
-    if (!all) {
-      all = contacts[c];
-    } else if (device.connection == Connection::all) {
-      all = {.steady_force_time = later(all->steady_force_time, steady),
-             .least_force_after_touch = less(all->least_force_after_touch, least)};
-    } else {
-      all = {.steady_force_time = std::fmin(all->steady_force_time, steady),
-             .least_force_after_touch = std::fmax(all->least_force_after_touch, least)};
-    }
-  }
-  return *all;
 }
 
 }  // namespace softland

@@ -11,9 +11,7 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "model/closing/observer.h"
@@ -42,15 +40,6 @@ class ConnectionTouches {
   Touch pending_;
   FirstTouch first_touch_;
 };
-
-/// Contact force of a closing: the time from which the force stays above ClosingOptions::steady_force [s], and the least force
-/// after its first maximum [N]; see Trajectory.
-struct ForceOutcome {
-  double steady_force_time = std::numeric_limits<double>::quiet_NaN();
-  double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
-};
-/// Computes settling time and least force of the connection from those of the contacts, given in the order of Device::contacts.
-[[nodiscard]] ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts);
 
 class ConnectionCourse {
  public:

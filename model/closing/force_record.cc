@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <variant>
 
 #include "integrators/roots.h"
@@ -50,23 +52,26 @@ template <class Force>
 void ForceRecord::follow(const Force& force, double begin, double from, double end, double to) {
   has_fallen_ = has_fallen_ || (has_risen_ && to < from);
   has_risen_ = has_risen_ || to > from;
-  if (has_fallen_) least_ = std::min({least_, from, to});
+  double& least = outcome_.least_force_after_touch;
+  if (has_fallen_) least = std::min({least, from, to});
   largest_ = std::max({largest_, from, to});
   last_ = to;
+  double& steady = outcome_.steady_force_time;
   if (to < threshold_) {
-    steady_from_ = none;
-  } else if (to >= threshold_ && std::isnan(steady_from_)) {
+    steady = std::numeric_limits<double>::quiet_NaN();
+  } else if (to >= threshold_ && std::isnan(steady)) {
     const auto above = [&](double t) { return force(t) - threshold_; };
-    steady_from_ = from < threshold_ ? bracketed_zero(above, begin, end) : begin;
+    steady = from < threshold_ ? bracketed_zero(above, begin, end) : begin;
   }
 }
 
-// Returns the least contact force after its first maximum. When a contact opens, rounding of its position may leave a tiny
-// force, which counts as 0.
-double ForceRecord::least() const {
+ForceOutcome ForceRecord::outcome() const {
+  ForceOutcome result = outcome_;
+  if (!has_fallen_) result.least_force_after_touch = last_;
+  // When a contact opens, rounding of its position may leave a tiny force, which counts as 0.
   constexpr double rounding = 1e-12;
-  const double least = has_fallen_ ? least_ : last_;
-  return std::abs(least) < rounding * largest_ ? 0 : least;
+  if (std::abs(result.least_force_after_touch) < rounding * largest_) result.least_force_after_touch = 0;
+  return result;
 }
 
 void ForceRecord::take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law) {
@@ -86,6 +91,26 @@ void ForceRecord::take_line(const TrajectoryPoint& from, const TrajectoryPoint& 
     return std::lerp(from.contact_force, to.contact_force, (t - from.time) / (to.time - from.time));
   };
   follow(force, from.time, from.contact_force, to.time, to.contact_force);
+}
+
+ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts) {
+  if (contacts.size() == 1) return contacts.front();
+  // A connection of all contacts settles with the last of them, and its least force is the smallest of theirs. Each result is
+  // NaN if that of one contact is NaN (unknown).
+  const auto later = [](double a, double b) { return std::isnan(a) || a > b ? a : b; };
+  const auto less = [](double a, double b) { return std::isnan(a) || a < b ? a : b; };
+  const bool needs_all = device.connection == Connection::all;
+  std::optional<ForceOutcome> all;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (!device.contacts[c].connects) continue;
+    const ForceOutcome& own = contacts[c];
+    if (!all) all = own;
+    double& steady = all->steady_force_time;
+    steady = needs_all ? later(steady, own.steady_force_time) : std::fmin(steady, own.steady_force_time);
+    double& least = all->least_force_after_touch;
+    least = needs_all ? less(least, own.least_force_after_touch) : std::fmax(least, own.least_force_after_touch);
+  }
+  return *all;
 }
 
 }  // namespace softland

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 
 #include "model/closing/step_motion.h"
 #include "model/contact/contact_law.h"
@@ -27,18 +28,14 @@ class ForceRecord {
   /// Adds an interval after first contact over which the contact force is taken as linear in time, as along a pad.
   void take_line(const TrajectoryPoint& from, const TrajectoryPoint& to);
 
-  /// Records that the contact force has passed its first maximum, so that least() includes later forces: the contact has
-  /// opened, or an impact on a rigid contact is over.
+  /// Records that the contact force has passed its first maximum, so that the least force includes later forces: the contact
+  /// has opened, or an impact on a rigid contact is over.
   void pass_maximum() { has_fallen_ = true; }
 
-  /// Returns the time from which the contact force stays at or above the threshold, Trajectory::steady_force_time [s].
-  [[nodiscard]] double steady_from() const { return steady_from_; }
-  /// Returns the least contact force after its first maximum, Trajectory::least_force_after_touch [N].
-  [[nodiscard]] double least() const;
+  /// Returns the outcome up to now, after a touch.
+  [[nodiscard]] ForceOutcome outcome() const;
 
  private:
-  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
   /// Adds an interval between two turning points of the contact point to the record. `from` and `to` are the forces at its ends
   /// [N].
   template <class Force>
@@ -51,8 +48,12 @@ class ForceRecord {
   double threshold_;  // contact force from which the contact counts as settled [N]
   bool rises_with_depth_;
   bool has_risen_ = false, has_fallen_ = false;
-  double steady_from_ = none, least_ = std::numeric_limits<double>::infinity(), last_ = 0;
+  ForceOutcome outcome_{.least_force_after_touch = std::numeric_limits<double>::infinity()};
+  double last_ = 0;
   double largest_ = 0;  // largest contact force so far [N]
 };
+
+/// Computes the outcome of the connection from those of the contacts, given in the order of Device::contacts.
+[[nodiscard]] ForceOutcome force_of_connection(const Device& device, std::span<const ForceOutcome> contacts);
 
 }  // namespace softland

@@ -60,6 +60,8 @@ struct UniformAsperityContactOf {
     }
     return d;
   }
+  /// Returns the interference at which the contact stores this energy while only some asperities are in contact [m].
+  [[nodiscard]] double interference_of_energy(double stored) const { return height * std::pow(stored / energy(height), 2.0 / 7); }
 };
 
 /// Returns the contact law of all asperities `summits` under the pad, with heights uniform up to `height` [m].

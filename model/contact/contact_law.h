@@ -51,6 +51,29 @@ struct ContactLaw : internal::KernelsOf<ContactModel>::Type {
   using variant::variant;
 };
 
+/// A contact law that is one formula for loading and unloading, and that can be inverted. Closings in SIMD lanes and circuit
+/// models support such a law, and the law with damping.
+template <class Law>
+concept InvertibleContact = requires(const Law& law) {
+  law.interference(0.0);
+  law.interference_of_energy(0.0);
+};
+/// True for an invertible contact law with the damping of Hunt and Crossley.
+template <class Law>
+inline constexpr bool is_damped_invertible = false;
+template <InvertibleContact Elastic>
+inline constexpr bool is_damped_invertible<HuntCrossley<Elastic>> = true;
+
+namespace internal {
+template <class>
+struct InvertibleOf;
+template <class... Laws>
+struct InvertibleOf<std::variant<Laws...>>
+    : WithKernels<std::variant<>, std::conditional_t<InvertibleContact<Laws>, std::variant<Laws>, std::variant<>>...> {};
+}  // namespace internal
+/// An invertible contact law of any kind.
+using InvertibleContactLaw = internal::InvertibleOf<ContactLaw::variant>::Type;
+
 /// Returns the pad size of a contact, all its equal pads together; `width` is that of the moving part [m].
 [[nodiscard]] inline ContactPad pad_of(const Contact& contact, double width) {
   const double one = contact.pad_width > 0 ? contact.pad_width : width;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <variant>
 
@@ -32,6 +33,8 @@ struct LinearContactOf {
   /// Returns the interference at which the spring exerts this force [m].
   [[nodiscard]] double interference(double force) const { return force / stiffness; }
   [[nodiscard]] double energy(double d) const { return stiffness * d * d / 2; }
+  /// Returns the interference at which the spring stores this energy [m].
+  [[nodiscard]] double interference_of_energy(double energy) const { return std::sqrt(2 * energy / stiffness); }
 };
 using LinearContact = LinearContactOf<double>;
 

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "base/require.h"
 #include "model/built_beam.h"
 #include "model/closing/connection.h"
+#include "model/closing/force_record.h"
 #include "model/closing/tolerances.h"
 #include "model/contact/contact_law.h"
 #include "model/ensemble/lane_closing.h"
@@ -43,23 +45,6 @@ std::optional<simd::LaneFringing> lane_fringing(Fringing fringing) {
   }
 }
 
-std::optional<simd::LaneFilm> lane_film(const std::optional<Gas>& gas) {
-  using Lane = simd::LaneFilm;
-  if (!gas) return Lane::none;
-  return std::visit(
-      []<class Law>(const Law&) -> std::optional<Lane> {
-        if constexpr (std::is_same_v<Law, StripGas>) return Lane::strip;
-        if constexpr (std::is_same_v<Law, StripSlitGas>) return Lane::strip_slit;
-        if constexpr (std::is_same_v<Law, VeijolaGas>) return Lane::veijola;
-        if constexpr (std::is_same_v<Law, GallisTorczynskiGas>) return Lane::gallis_torczynski;
-        if constexpr (std::is_same_v<Law, NearContactGas>) return Lane::near_contact;
-        if constexpr (std::is_same_v<Law, GuoAlexeenkoGas>) return Lane::guo_alexeenko;
-        if constexpr (std::is_same_v<Law, LinearGas>) return Lane::linear;
-        return std::nullopt;
-      },
-      *gas);
-}
-
 std::optional<simd::LaneDispersion> lane_dispersion(const std::optional<Dispersion>& force) {
   if (!force) return simd::LaneDispersion::none;
   if (force->model == DispersionModel::van_der_waals) return simd::LaneDispersion::van_der_waals;
@@ -67,35 +52,38 @@ std::optional<simd::LaneDispersion> lane_dispersion(const std::optional<Dispersi
   return force->model == DispersionModel::casimir ? simd::LaneDispersion::casimir : simd::LaneDispersion::smaller;
 }
 
-/// A contact law as numbers for SIMD lanes (one lane per switch): its elastic law, damping [s/m] and unloading stiffness.
-struct ElasticContact {
-  simd::LaneContact law = simd::LaneContact::linear;
-  // `strength` is the factor of the contact force, for the law `linear` its stiffness [N/m]; `height` is the asperities'
-  // greatest height [m].
-  double strength = 0, height = 0;
-  double damping = 0;
-  double unloading = 0;  // unloading stiffness of a contact with memory [N/m]; 0 without memory
+/// A contact law of closings in SIMD lanes: the law without damping and memory, and what is added to it.
+struct LaneContactLaw {
+  InvertibleContactLaw elastic;
+  double damping = 0;                 // damping constant [s/m]
+  double loading = 0, unloading = 0;  // stiffness of a contact with memory [N/m]; 0 without memory
 };
-std::optional<ElasticContact> lane_contact(const ContactLaw& law) {
-  using Lane = simd::LaneContact;
-  const auto rough = [](const UniformAsperityContact& c, double damping) {
-    return ElasticContact{.law = Lane::asperity_uniform, .strength = c.strength, .height = c.height, .damping = damping};
-  };
-  if (const auto* c = std::get_if<UniformAsperityContact>(&law)) return rough(*c, 0);
-  if (const auto* c = std::get_if<HuntCrossley<UniformAsperityContact>>(&law)) return rough(c->elastic, c->damping);
-  if (const auto* c = std::get_if<LinearContact>(&law)) return ElasticContact{.strength = c->stiffness};
-  if (const auto* c = std::get_if<HuntCrossley<LinearContact>>(&law))
-    return ElasticContact{.strength = c->elastic.stiffness, .damping = c->damping};
-  if (const auto* c = std::get_if<HystereticContact>(&law))
-    return ElasticContact{.strength = c->loading.stiffness, .unloading = c->elastic.stiffness};
-  return std::nullopt;
+std::optional<LaneContactLaw> lane_contact(const ContactLaw& law) {
+  return std::visit(
+      []<class Law>(const Law& own) -> std::optional<LaneContactLaw> {
+        if constexpr (InvertibleContact<Law>) return LaneContactLaw{.elastic = own};
+        if constexpr (is_damped_invertible<Law>) return LaneContactLaw{.elastic = own.elastic, .damping = own.damping};
+        if constexpr (std::is_same_v<Law, HystereticContact>)
+          return LaneContactLaw{.elastic = own.loading, .loading = own.loading.stiffness, .unloading = own.elastic.stiffness};
+        return std::nullopt;
+      },
+      law);
+}
+/// Copies the members of a law, all of which are numbers, to the parameters that SIMD lanes take.
+template <class Law>
+void copy_parameters(const Law& law, double (&to)[simd::most_parameters]) {
+  static_assert(sizeof law <= sizeof to);
+  std::memcpy(to, &law, sizeof law);
 }
 
-/// Returns true when the switch has contacts, and closings in SIMD lanes support the force laws of all of them.
-bool knows_contacts(const Switch& model) {
-  for (std::size_t c = 0; c < model.contacts(); ++c)
-    if (model.has_spread_contact(c) || !lane_contact(model.contact(c))) return false;
-  return model.has_contact();
+/// Returns the reason why closings in SIMD lanes do not support the contacts of the switch; empty when they do.
+std::string why_not_contacts(const Switch& model) {
+  if (!model.has_contact()) return "no contact";
+  for (std::size_t c = 0; c < model.contacts(); ++c) {
+    if (model.has_spread_contact(c)) return "a contact along its pad";
+    if (!lane_contact(model.contact(c))) return fmt::format("the contact law {}", name_of(model.device().contacts[c].model));
+  }
+  return {};
 }
 
 /// Returns true when simd::UsualLaws, the fast code for common force laws, supports all force laws of the switch.
@@ -195,15 +183,15 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
                     .drives = to_int(model.drives()),
                     .piezo = model.has_piezo(),
                     .stretching = model.stretching().has_value(),
-                    .film = *lane_film(device.gas),
+                    .film = model.gas() ? to_int(model.gas()->index()) : -1,
                     .far_film = device.gas && !std::isnan(far_gap(*device.gas)),
                     .dispersion = *lane_dispersion(device.dispersion),
                     .contacts = to_int(model.contacts()),
                     .needs_all = device.connection == Connection::all,
                     .measures_work = measures_work};
   for (std::size_t c = 0; c < model.contacts(); ++c) {
-    const ElasticContact contact = *lane_contact(model.contact(c));
-    layout.contact[c] = {.law = contact.law,
+    const LaneContactLaw contact = *lane_contact(model.contact(c));
+    layout.contact[c] = {.law = to_int(contact.elastic.index()),
                          .damped = contact.damping > 0,
                          .remembers = contact.unloading > 0,
                          .near = device.contacts[c].side == Side::near,
@@ -219,14 +207,6 @@ LaneLayout layout_of(const Switch& model, bool measures_work) {
   return layout;
 }
 
-// Returns the interference at which the contact stores this energy [m]; for asperities the formula holds while only some of
-// them are in contact.
-double depth_of_energy(const ElasticContact& contact, double energy) {
-  if (contact.law == simd::LaneContact::linear) return std::sqrt(2 * energy / contact.strength);
-  const UniformAsperityContact law{.strength = contact.strength, .height = contact.height};
-  return law.height * std::pow(energy / law.energy(law.height), 2.0 / 7);
-}
-
 /// Sets the numbers with which the gaps on the far side of the moving part are computed and checked, for the electrodes and the
 /// gas film there.
 void set_far_side(LaneSwitch& s, const Device& device) {
@@ -239,17 +219,6 @@ void set_far_side(LaneSwitch& s, const Device& device) {
     if (const Electrode& e = device.electrodes[k]; e.side != Side::near) set(e.gap, s.electrode_gaps[k], s.electrode_floor[k]);
   }
   if (device.gas && !std::isnan(far_gap(*device.gas))) set(far_gap(*device.gas), s.film_gaps, s.film_floor);
-}
-
-void set_film(LaneSwitch& s, const GasLaw& law) {
-  std::visit(
-      [&](const auto& film) {
-        if constexpr (requires { film.viscosity; }) std::fill_n(s.viscosity, simd::most_points, film.viscosity);
-        if constexpr (requires { film.mean_free_path; }) s.mean_free_path = film.mean_free_path;
-        if constexpr (requires { film.slit_height; }) s.slit_height = film.slit_height, s.slit_length = film.slit_length;
-        if constexpr (requires { film.damping; }) s.damping = film.damping;
-      },
-      law);
 }
 
 void set_dispersion(LaneSwitch& s, const Dispersion& force) {
@@ -269,27 +238,25 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   const Device& device = model.device();
   LaneSwitch s{.modes = model.modes(), .open = model.quadrature().rest_gaps().maxCoeff(), .floor = model.gap_floor()};
   for (std::size_t c = 0; c < model.contacts(); ++c) {
-    const ElasticContact contact = *lane_contact(model.contact(c));
-    s.contact[c] = {.plane = model.contact_gap(c),
-                    .strength = contact.strength,
-                    .height = contact.height,
-                    .damping = contact.damping,
-                    .unloading_stiffness = contact.unloading,
-                    .negligible_depth = depth_of_energy(contact, tolerance * model.bending_energy())};
+    const LaneContactLaw contact = *lane_contact(model.contact(c));
+    const double negligible = tolerance * model.bending_energy();
+    s.contact[c] = {
+        .plane = model.contact_gap(c),
+        .damping = contact.damping,
+        .loading_stiffness = contact.loading,
+        .unloading_stiffness = contact.unloading,
+        .negligible_depth = std::visit([&](const auto& law) { return law.interference_of_energy(negligible); }, contact.elastic)};
+    std::visit([&](const auto& law) { copy_parameters(law, s.contact[c].law); }, contact.elastic);
     std::ranges::copy(model.contact_shape(c), s.contact[c].shape);
   }
-  if (model.gas()) set_film(s, *model.gas());
   const std::vector<LaneStretch> stretches = stretches_of(model);
   for (std::size_t k = 0; k < stretches.size(); ++k) {
     s.width[k] = stretches[k].width, s.thickness[k] = stretches[k].thickness;
-    // Set the effective viscosity of each stretch of a beam of several widths: more gas leaves through the open ends of a wide
-    // film.
-    if (!device.structure.is_built() || !device.gas) continue;
-    std::visit(
-        [&](const auto& film) {
-          if constexpr (requires { film.viscosity; }) s.viscosity[k] = film.viscosity;
-        },
-        gas_law(*device.gas, s.width[k], s.thickness[k], 1));
+    if (!model.gas()) continue;
+    // The gas law of a beam of several widths differs from stretch to stretch.
+    const bool is_local = device.structure.is_built() && film_of(*device.gas) != nullptr;
+    std::visit([&](const auto& law) { copy_parameters(law, s.film[k]); },
+               is_local ? gas_law(*device.gas, s.width[k], s.thickness[k], 1) : *model.gas());
   }
   if (device.dispersion) set_dispersion(s, *device.dispersion);
   if (model.stretching()) set_stretching(s, *model.stretching());
@@ -314,9 +281,8 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
 /// Returns the interference at which the static force of a contact is EnsembleClosing::steady_force [m]; infinite if not given.
 double steady_depth(const EnsembleClosing& closing, std::size_t c) {
   if (!(closing.steady_force > 0)) return std::numeric_limits<double>::infinity();
-  const ElasticContact contact = *lane_contact(closing.model->contact(c));
-  if (contact.law == simd::LaneContact::linear) return closing.steady_force / contact.strength;
-  return UniformAsperityContact{.strength = contact.strength, .height = contact.height}.interference(closing.steady_force);
+  return std::visit([&](const auto& law) { return law.interference(closing.steady_force); },
+                    lane_contact(closing.model->contact(c))->elastic);
 }
 
 /// Adds forces and energies to the touches (intervals in contact) of a closing in a SIMD lane, and passes them to an observer.
@@ -346,16 +312,14 @@ class ContactAdapter final : public simd::LaneObserver {
   /// Returns the result of a closing whose simulation in a SIMD lane has ended.
   [[nodiscard]] EnsembleEnd end(const LaneClosing& lane) {
     tell(touches_.finish());
-    std::array<ForceOutcome, simd::most_contacts> forces;
+    auto forces = std::to_array(lane.force);
     for (std::size_t c = 0; c < model_->contacts(); ++c) {
       const double least = lane.least_depth[c];
-      forces[c] = {lane.steady_from[c], std::isnan(least) ? least : contact_force(model_->contact(c), least)};
+      forces[c].least_force_after_touch = std::isnan(least) ? least : contact_force(model_->contact(c), least);
     }
-    const auto [steady, least] = force_of_connection(model_->device(), {forces.data(), model_->contacts()});
     return {.followed = true,
             .time = lane.end,
-            .steady_force_time = steady,
-            .least_force_after_touch = least,
+            .force = force_of_connection(model_->device(), {forces.data(), model_->contacts()}),
             .first_touch = touches_.first_touch()};
   }
 
@@ -419,12 +383,11 @@ std::string why_not_in_lanes(const Switch& model) {
   if (std::ranges::any_of(device.electrodes, [](const Electrode& e) { return e.dielectric.has_value(); }))
     return "a dielectric on an electrode";
   if (!lane_dispersion(device.dispersion)) return "a dispersion force between gold";
-  if (!knows_contacts(model)) return "a contact other than linear, hysteretic or asperity-uniform at the contact point";
+  if (std::string why = why_not_contacts(model); !why.empty()) return why;
   if (model.contacts() > simd::most_contacts) return fmt::format("more than {} contacts", simd::most_contacts);
   // Only simulate_closing() determines the times at which the connection is electrically closed.
   if (device.electrical.is_asked()) return "a key that says when the connection is electrically closed";
-  if (!lane_film(device.gas))
-    return model.film_states() > 0 ? "a compressible gas film" : fmt::format("the gas film {}", name_of(*device.gas));
+  if (model.film_states() > 0) return "a compressible gas film";
   for (const Electrode& e : device.electrodes) {
     if (!lane_fringing(e.fringing)) return fmt::format("fringing by {}", name_of(fringing_laws, e.fringing));
   }
@@ -463,12 +426,12 @@ std::vector<EnsembleEnd> close_in_lanes(std::span<const EnsembleClosing> closing
     switches.push_back(numbers_of(*c.model, tolerance));
     adapters.emplace_back(c);
     LaneClosing& lane = followed[n];
-    lane = {.numbers = &switches.back(),
-            .duration = c.duration,
-            .after_contact = c.after_contact,
-            .no_end_before = c.no_end_before,
-            .no_contact_before = c.no_contact_before,
-            .observer = &adapters.back()};
+    lane = LaneClosing{.numbers = &switches.back(),
+                       .duration = c.duration,
+                       .after_contact = c.after_contact,
+                       .no_end_before = c.no_end_before,
+                       .no_contact_before = c.no_contact_before,
+                       .observer = &adapters.back()};
     for (std::size_t k = 0; k < c.model->contacts(); ++k) lane.steady_depth[k] = steady_depth(c, k);
     std::copy(rests[n].begin(), rests[n].end(), lane.start);
     for (std::size_t k = 0; k < c.drives.size(); ++k) {

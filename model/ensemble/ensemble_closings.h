@@ -81,10 +81,7 @@ struct EnsembleClosing {
 struct EnsembleEnd {
   bool followed = false;
   double time = 0;  ///< time at which the simulation ended [s]
-  /// Time from which the contact force stays at or above EnsembleClosing::steady_force [s], and least contact force after its
-  /// first maximum [N]; see Trajectory.
-  double steady_force_time = std::numeric_limits<double>::quiet_NaN(),
-         least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
+  ForceOutcome force = {};
   double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< energy from the sources; NaN if not computed [J]
   FirstTouch first_touch = {};  ///< first touch of any contact of the connection, for several contacts
 };

@@ -5,6 +5,8 @@
 
 #include <cstddef>
 
+#include "model/trajectory.h"
+
 namespace softland {
 enum class Vectors;  // defined in model/ensemble/ensemble_closings.h
 }
@@ -14,11 +16,11 @@ namespace softland::simd {
 inline constexpr int most_modes = 8, most_points = 48, most_drives = 6, most_segments = most_points;
 inline constexpr int most_contacts = 4;
 inline constexpr int usual_modes = 4;  ///< largest number of modes for UsualLaws (lane_laws.h)
+/// Largest number of parameters of a gas or contact law: of all members of the law, which have the type of its parameters.
+inline constexpr int most_parameters = 8;
 
 enum class LaneFringing { none, linear, meijs_fokkema };
-enum class LaneFilm { none, strip, strip_slit, veijola, gallis_torczynski, near_contact, guo_alexeenko, linear };
 enum class LaneDispersion { none, van_der_waals, casimir, smaller };
-enum class LaneContact { asperity_uniform, linear };
 
 /// Quadrature points from `begin` up to `end` that are over the same electrode, or all over none.
 struct Segment {
@@ -38,7 +40,7 @@ struct PointStretch {
 
 /// The kind of one contact, equal for all switches that are simulated together in SIMD lanes.
 struct LaneContactKind {
-  LaneContact law = LaneContact::asperity_uniform;
+  int law = -1;  ///< index of the law without damping and memory in InvertibleContactLaw
   bool damped = false;
   bool remembers = false;  ///< true when loading and unloading of the contact have different stiffness
   bool near = true;        ///< true for a contact on the side of the electrode; false for a back stop
@@ -55,7 +57,7 @@ struct LaneLayout {
   int modes = 0, points = 0, segments = 0, electrodes = 0, drives = 0;
   bool piezo = false, stretching = false;
   LaneFringing fringing = LaneFringing::none;  ///< fringing law of all electrodes; only for UsualLaws
-  LaneFilm film = LaneFilm::none;
+  int film = -1;                               ///< index of the gas law in GasLaw; -1 without gas
   bool far_film = false;
   LaneDispersion dispersion = LaneDispersion::none;
   int contacts = 1;
@@ -70,12 +72,13 @@ struct LaneLayout {
 
 /// One contact of one switch in a SIMD lane, as plain numbers.
 struct LaneContactNumbers {
-  double plane = 0;                 // distance of the contact from its plane at rest [m]
-  double shape[most_modes] = {};    // mode shapes at the contact, positive towards its plane [kg^(-1/2)]
-  double strength = 0, height = 0;  // factor of the contact force (`linear`: stiffness [N/m]), height of asperities [m]
-  double damping = 0;               // damping constant of the contact [s/m]
-  double unloading_stiffness = 0;   // unloading stiffness of a law with memory; loading: `strength` [N/m]
-  double negligible_depth = 0;      // distance from the contact plane at which a step counts as ending on the plane [m]
+  double plane = 0;                  // distance of the contact from its plane at rest [m]
+  double shape[most_modes] = {};     // mode shapes at the contact, positive towards its plane [kg^(-1/2)]
+  double law[most_parameters] = {};  // parameters of the law without damping and memory
+  double damping = 0;                // damping constant of the contact [s/m]
+  // Stiffness of a law with memory while loading and while unloading [N/m].
+  double loading_stiffness = 0, unloading_stiffness = 0;
+  double negligible_depth = 0;  // distance from the contact plane at which a step counts as ending on the plane [m]
 };
 
 /// One switch in a SIMD lane, as plain numbers. Entries of modes that the switch does not have are 0.
@@ -91,10 +94,7 @@ struct LaneSwitch {
   double flying[most_modes] = {}, touching[most_modes] = {};
   double speed[most_modes] = {};                                // absolute tolerances of the modal velocities
   double width[most_points] = {}, thickness[most_points] = {};  // size of the beam in each PointStretch [m]
-  double viscosity[most_points] = {};                           // effective viscosity of the gas in each PointStretch [Pa s]
-  // Mean free path of the gas, height and length of the slit under the film [m].
-  double mean_free_path = 0, slit_height = 0, slit_length = 0;
-  double damping = 0;  // damping per length of the gas law `linear` [N s/m^2]
+  double film[most_points][most_parameters] = {};               // parameters of the gas law in each PointStretch
   // Sum of the gaps on the near and the far side of the beam [m], from which the far gap follows; for each electrode on the far
   // side, and for a gas film there.
   double electrode_gaps[most_drives] = {}, film_gaps = 0;
@@ -161,9 +161,10 @@ struct LaneClosing {
   LaneObserver* observer = nullptr;
   bool followed = false;
   double end = 0;
-  /// Time from which the force of each contact stays at or above EnsembleClosing::steady_force [s], NaN if the force is below
-  /// it at the end; least interference after the first maximum of the force [m], NaN without a touch.
-  double steady_from[most_contacts] = {}, least_depth[most_contacts] = {};
+  /// Outcome of each contact, without its least force. This follows from the least interference after the first maximum of the
+  /// force [m], which is NaN without a touch.
+  ForceOutcome force[most_contacts] = {};
+  double least_depth[most_contacts] = {};
 };
 
 using LaneRunner = void (*)(const LaneLayout& layout, LaneClosing* closings, std::size_t count);

@@ -13,25 +13,50 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 #include <type_traits>
+#include <variant>
 
-#include "model/contact/asperity_uniform.h"
-#include "model/contact/hunt_crossley.h"
-#include "model/contact/linear.h"
+#include "model/contact/contact_law.h"
 #include "model/ensemble/lane_closing.h"
 #include "model/forces/casimir.h"
 #include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
 #include "model/forces/van_der_waals.h"
-#include "model/gas/gallis_torczynski.h"
-#include "model/gas/guo_alexeenko.h"
-#include "model/gas/linear_damper.h"
-#include "model/gas/near_contact.h"
-#include "model/gas/strip.h"
-#include "model/gas/strip_slit.h"
-#include "model/gas/veijola.h"
+#include "model/gas/gas.h"
 
 namespace softland::simd {
+
+/// The law `LawOf<V>` of the switches in SIMD lanes, from the law LawOf<double> of one switch.
+template <class Law, class V>
+struct LawInLanes;
+template <template <class> class LawOf, class V>
+struct LawInLanes<LawOf<double>, V> {
+  using Type = LawOf<V>;
+  static_assert(sizeof(LawOf<double>) <= most_parameters * sizeof(double));
+  static_assert(sizeof(LawOf<V>) / sizeof(V) == sizeof(LawOf<double>) / sizeof(double));
+};
+/// Returns the law with these parameters, which are the members of `Law` in their order. The bytes are copied by memcpy(): GCC 12
+/// makes zeros of some members by std::bit_cast of an array.
+template <class Law, class V>
+[[gnu::always_inline]] inline auto law_in_lanes(const V* parameters) {
+  typename LawInLanes<Law, V>::Type law;
+  std::memcpy(static_cast<void*>(&law), static_cast<const void*>(parameters), sizeof law);
+  return law;
+}
+/// Sets the parameters of a law in SIMD lane `l`.
+template <class V>
+void set_parameters(V* lanes, const double* parameters, std::size_t l) {
+  for (std::size_t i = 0; i < most_parameters; ++i) lanes[i][l] = parameters[i];
+}
+/// Returns f.operator()<Law>() for the law with this index in a variant of laws.
+template <class Laws, std::size_t i = 0, class F>
+[[gnu::always_inline]] inline decltype(auto) with_law(int index, F&& f) {
+  if constexpr (i + 1 < std::variant_size_v<Laws>) {
+    if (index != static_cast<int>(i)) return with_law<Laws, i + 1>(index, f);
+  }
+  return f.template operator()<std::variant_alternative_t<i, Laws>>();
+}
 
 template <class V>
 class UsualContact {
@@ -40,8 +65,8 @@ class UsualContact {
 
   /// Sets the parameters of this contact in SIMD lane `l`.
   void take(const LaneContactKind&, const LaneContactNumbers& numbers, std::size_t l) {
-    strength_[l] = numbers.strength, height_[l] = numbers.height;
-    law_ = {.strength = strength_, .height = height_};
+    set_parameters(parameters_, numbers.law, l);
+    law_ = law_in_lanes<UniformAsperityContact>(parameters_);
   }
 
   /// Returns the contact force at the interference `depth` [N]; its rate is not needed, since there is no damping.
@@ -51,7 +76,7 @@ class UsualContact {
   }
 
  private:
-  V strength_, height_;
+  V parameters_[most_parameters];
   UniformAsperityContactOf<V> law_;
 };
 
@@ -63,14 +88,14 @@ class AnyContact {
 
   void take(const LaneContactKind& kind, const LaneContactNumbers& numbers, std::size_t l) {
     kind_ = kind;
-    strength_[l] = numbers.strength, height_[l] = numbers.height, damping_[l] = numbers.damping;
-    unloading_[l] = numbers.unloading_stiffness;
+    set_parameters(parameters_, numbers.law, l);
+    damping_[l] = numbers.damping, unloading_[l] = numbers.unloading_stiffness;
   }
 
   template <class Rate>
   V push(V depth, Rate&& rate) const {
-    if (kind_.law == LaneContact::linear) return push_of(LinearContactOf<V>{.stiffness = strength_}, depth, rate);
-    return push_of(UniformAsperityContactOf<V>{.strength = strength_, .height = height_}, depth, rate);
+    return with_law<InvertibleContactLaw>(kind_.law,
+                                          [&]<class Law>() { return push_of(law_in_lanes<Law>(parameters_), depth, rate); });
   }
   /// Returns the force of a contact with memory while unloading [N]; `depth` is the interference less the residual
   /// interference.
@@ -84,13 +109,12 @@ class AnyContact {
   }
 
   LaneContactKind kind_;
-  V strength_, height_, damping_, unloading_;
+  V parameters_[most_parameters], damping_, unloading_;
 };
 
 template <class V, template <class> class FringingOf, bool has_film, int most_stretches = 1>
 class UsualLaws {
   using Force = ElectrostaticForce<FringingOf<V>>;
-  using Film = StripSqueezeFilmOf<V>;
   /// True when the fringing law is computed from h^(-1/4) of the gap h; the law of the gas film then uses this root, too.
   static constexpr bool has_root = requires(const FringingOf<V>& law, V h) { law.factor_over_square(h); };
 
@@ -110,13 +134,13 @@ class UsualLaws {
     }
     open_[l] = s.open, floor_[l] = s.floor;
     for (int k = 0; k < (most_stretches == 1 ? 1 : layout_.stretches); ++k) {
-      width_[k][l] = s.width[k], thickness_[k][l] = s.thickness[k], viscosity_[k][l] = s.viscosity[k];
+      width_[k][l] = s.width[k], thickness_[k][l] = s.thickness[k];
       if constexpr (std::is_same_v<FringingOf<V>, MeijsFokkemaFringingOf<V>>) {
         force_[k] = Force{{.width = width_[k], .thickness = thickness_[k]}};
       } else {
         force_[k] = Force{{.width = width_[k]}};
       }
-      film_[k] = Film{.viscosity = viscosity_[k], .width = width_[k]};
+      set_parameters(film_[k], s.film[k], l);
     }
   }
 
@@ -136,12 +160,13 @@ class UsualLaws {
       load *= weight_[p];
       for (int i = 0; i < capacity; ++i) sum[i] += load * shape_[p][i];
     };
-    Film film = film_[0];
+    auto film = law_in_lanes<StripSqueezeFilm>(film_[0]);
     Force force = force_[0];
     const int segments = layout_.segments;
     for (int s = 0; s < segments; ++s) {
       const Segment segment = layout_.segment[s];
-      if constexpr (most_stretches > 1) film = film_[segment.stretch], force = force_[segment.stretch];
+      if constexpr (most_stretches > 1)
+        film = law_in_lanes<StripSqueezeFilm>(film_[segment.stretch]), force = force_[segment.stretch];
       if (segment.electrode < 0) {
         if constexpr (has_film) {
           for (int p = segment.begin; p < segment.end; ++p) {
@@ -179,9 +204,9 @@ class UsualLaws {
  private:
   const LaneLayout& layout_;
   V shape_[most_points][capacity], weight_[most_points], rest_gap_[most_points];
-  V open_, floor_, width_[most_stretches], thickness_[most_stretches], viscosity_[most_stretches];
+  V open_, floor_, width_[most_stretches], thickness_[most_stretches];
   Force force_[most_stretches];
-  Film film_[most_stretches];
+  V film_[most_stretches][most_parameters];
 };
 
 template <class V>
@@ -204,12 +229,11 @@ class AnyLaws {
     }
     open_[l] = s.open, floor_[l] = s.floor, most_gap_[l] = s.most_gap;
     for (int k = 0; k < layout_.stretches; ++k) {
-      width_[k][l] = s.width[k], thickness_[k][l] = s.thickness[k], viscosity_[k][l] = s.viscosity[k];
+      width_[k][l] = s.width[k], thickness_[k][l] = s.thickness[k];
+      set_parameters(film_[k], s.film[k], l);
       // Construct the fringing law once per switch, since its constructor computes roots of the width.
       if (has_meijs_fokkema_) meijs_fokkema_[k] = {.width = width_[k], .thickness = thickness_[k]};
     }
-    mean_free_path_[l] = s.mean_free_path;
-    slit_height_[l] = s.slit_height, slit_length_[l] = s.slit_length, damping_[l] = s.damping;
     for (int k = 0; k < layout_.electrodes; ++k)
       electrode_gaps_[k][l] = s.electrode_gaps[k], electrode_floor_[k][l] = s.electrode_floor[k];
     film_gaps_[l] = s.film_gaps, film_floor_[l] = s.film_floor;
@@ -224,7 +248,7 @@ class AnyLaws {
   void add(const V* __restrict q, const V* __restrict v, const V* volts, V* sum, V& least) {
     find_field(q, v, least);
     power_ = 0;
-    if (layout_.film != LaneFilm::none) {
+    if (layout_.film >= 0) {
       add_film(gap_);
       if (layout_.far_film) {
         check_far_gap(0, layout_.points, film_gaps_, film_floor_);
@@ -305,27 +329,7 @@ class AnyLaws {
     on_stretches(0, layout_.points, [&](int begin, int end, int k) { add_film(gap, begin, end, k); });
   }
   void add_film(const V* gap, int begin, int end, int k) {
-    const V& width = width_[k];
-    const auto with = [&](auto law) { add_law(law, gap, begin, end, V(1)); };
-    switch (layout_.film) {
-      case LaneFilm::none:
-        return;
-      case LaneFilm::strip:
-        return with(StripSqueezeFilmOf<V>{.viscosity = viscosity_[k], .width = width});
-      case LaneFilm::strip_slit:
-        return with(StripOverSlitOf<V>{
-            .viscosity = viscosity_[k], .width = width, .slit_height = slit_height_, .slit_length = slit_length_});
-      case LaneFilm::veijola:
-        return with(VeijolaFilmOf<V>{.viscosity = viscosity_[k], .mean_free_path = mean_free_path_, .width = width});
-      case LaneFilm::gallis_torczynski:
-        return with(GallisTorczynskiFilmOf<V>{.viscosity = viscosity_[k], .mean_free_path = mean_free_path_, .width = width});
-      case LaneFilm::near_contact:
-        return with(NearContactFilmOf<V>{.viscosity = viscosity_[k], .mean_free_path = mean_free_path_, .width = width});
-      case LaneFilm::guo_alexeenko:
-        return with(GuoAlexeenkoFilmOf<V>{.mean_free_path = mean_free_path_, .width = width, .thickness = thickness_[k]});
-      case LaneFilm::linear:
-        return with(LinearDamperOf<V>{.damping = damping_});
-    }
+    with_law<GasLaw::variant>(layout_.film, [&]<class Law>() { add_law(law_in_lanes<Law>(film_[k]), gap, begin, end, V(1)); });
   }
 
   void add_electrode(const Segment& pad, const V* volts) {
@@ -406,10 +410,10 @@ class AnyLaws {
   const int modes_;
   V shape_[most_points * capacity], weight_[most_points], rest_gap_[most_points];
   V gap_[most_points], far_gap_[most_points], velocity_[most_points], load_[most_points];
-  V open_, floor_, most_gap_, width_[most_points], thickness_[most_points], viscosity_[most_points];
+  V open_, floor_, most_gap_, width_[most_points], thickness_[most_points];
+  V film_[most_points][most_parameters];
   MeijsFokkemaFringingOf<V> meijs_fokkema_[most_points];
   bool has_meijs_fokkema_ = false;
-  V mean_free_path_, slit_height_, slit_length_, damping_;
   V electrode_gaps_[most_drives], electrode_floor_[most_drives], film_gaps_, film_floor_;
   V hamaker_, distance_, crossover_;
   V tension_, slopes_[capacity * capacity];

@@ -497,7 +497,7 @@ class SimdClosings {
       if (one.in_dent) return 0;
       if (one.unloading) {
         const LaneContactNumbers& numbers = lane_[l].closing->numbers->contact[c];
-        return (depth - shift_[c][l]) * (numbers.unloading_stiffness / numbers.strength);
+        return (depth - shift_[c][l]) * (numbers.unloading_stiffness / numbers.loading_stiffness);
       }
     }
     return depth;
@@ -898,7 +898,7 @@ class SimdClosings {
       const double depth = position_[c][l] - plane_[c][l] - left;
       one.deepest = depth;
       if (depth > one.extreme) one.extreme = depth;
-      shift_[c][l] = depth * (1 - numbers.strength / numbers.unloading_stiffness);
+      shift_[c][l] = depth * (1 - numbers.loading_stiffness / numbers.unloading_stiffness);
       enter_phase(c, l, true, false);
       return true;
     }
@@ -930,7 +930,8 @@ class SimdClosings {
     low_[c][l] = one.low, high_[c][l] = one.high;
     unloading_[c][l] = unloading, in_dent_[c][l] = in_dent, loading_[c][l] = one.touching && !unloading && !in_dent;
     const double depth = lane_[l].closing->steady_depth[c];
-    steady_[c][l] = unloading || in_dent ? shifted + depth * (numbers.strength / numbers.unloading_stiffness) : plane + depth;
+    steady_[c][l] =
+        unloading || in_dent ? shifted + depth * (numbers.loading_stiffness / numbers.unloading_stiffness) : plane + depth;
   }
 
   // Begins or ends a touch of a contact whose point crosses its contact plane.
@@ -1049,7 +1050,7 @@ class SimdClosings {
         }
       }
       const double depth = one.touching ? depth_of_force(c, l, position_[c][l] - plane_[c][l]) : 0;
-      lane.closing->steady_from[c] = position_[c][l] < steady_[c][l] ? nothing : one.steady;
+      lane.closing->force[c].steady_force_time = position_[c][l] < steady_[c][l] ? nothing : one.steady;
       lane.closing->least_depth[c] = !one.touched ? nothing : depth < one.least ? depth : one.least;
     });
     if constexpr (has_several) {
@@ -1172,7 +1173,7 @@ class SimdClosings {
 
 template <class V, template <class> class FringingOf>
 void run_with(const LaneLayout& layout, LaneClosing* closings, std::size_t count) {
-  if (layout.film == LaneFilm::strip) {
+  if (layout.film >= 0) {
     SimdClosings<V, UsualLaws<V, FringingOf, true>>(layout, closings, count).run();
   } else {
     SimdClosings<V, UsualLaws<V, FringingOf, false>>(layout, closings, count).run();

@@ -1,6 +1,7 @@
 // The gas of a device: the parameters of its gas law. To add a law, write a header and add its parameters to the variant Gas.
 #pragma once
 
+#include <utility>
 #include <variant>
 
 #include "model/gas/gallis_torczynski.h"
@@ -16,6 +17,19 @@ namespace softland {
 
 using Gas = std::variant<StripGas, StripSlitGas, VeijolaGas, GallisTorczynskiGas, NearContactGas, GuoAlexeenkoGas, ReynoldsGas,
                          LinearGas>;
+
+namespace internal {
+template <class>
+struct LawsOf;
+template <class... Laws>
+struct LawsOf<std::variant<Laws...>> {
+  using Type = std::variant<decltype(std::declval<const Laws&>().law(std::declval<const Film&>()))...>;
+};
+}  // namespace internal
+/// A gas law of any kind: a variant of all types that the alternatives of Gas return by their function law(film).
+struct GasLaw : internal::LawsOf<Gas>::Type {
+  using variant::variant;
+};
 
 /// Returns the state of the gas (viscosity, pressure, temperature) in the parameters of a gas law; null for a law without gas
 /// state.

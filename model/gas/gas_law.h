@@ -1,9 +1,8 @@
-// The gas laws as one type, and the range in which each law is valid.
+// The force of the gas film of a device, and the range in which its law is valid.
 #pragma once
 
 #include <cmath>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -12,19 +11,6 @@
 #include "model/trajectory.h"
 
 namespace softland {
-
-namespace internal {
-template <class>
-struct LawsOf;
-template <class... Laws>
-struct LawsOf<std::variant<Laws...>> {
-  using Type = std::variant<decltype(std::declval<const Laws&>().law(std::declval<const Film&>()))...>;
-};
-}  // namespace internal
-/// A gas law of any kind: a variant of all types that the alternatives of Gas return by their function law(film).
-struct GasLaw : internal::LawsOf<Gas>::Type {
-  using variant::variant;
-};
 
 /// Returns the damping of a rectangular gas film over that of a strip of the same length with closed ends; `ratio` is width
 /// over length.

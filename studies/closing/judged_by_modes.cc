@@ -11,7 +11,8 @@ void judge_opening_with_more_modes(Closing& c, const PreparedScene& prepared, co
   const ModeLadder ladder(prepared);
   if (!ladder.exists()) return;
   if (stability(ladder, closed_equilibria(ladder, values_before(signals))).stable == false) {
-    c.metrics = {.status = Status::collapsed_at_rest};
+    c.metrics = {};
+    c.metrics.status = Status::collapsed_at_rest;
     c.errors = {};
     c.trajectory.status = Status::collapsed_at_rest;
     c.trajectory.message =

@@ -40,8 +40,7 @@ class LaneFigures final : public LandingObserver {
     Trajectory run{.status = Status::done,
                    .contact_gap = model.contact_gap(),
                    .in_contact_period = model.basis().in_contact_period(),
-                   .steady_force_time = end.steady_force_time,
-                   .least_force_after_touch = end.least_force_after_touch,
+                   .force = end.force,
                    .first_touch = end.first_touch,
                    .energy = {.source_work = end.drive_energy}};
     if (model.contacts() > 1) run.contacts.resize(model.contacts());

@@ -76,8 +76,9 @@ double waited(std::span<const DeviceOutcome> outcomes, double Metrics::*figure) 
 
 FreeTime free_time(std::span<const DeviceOutcome> of_step) {
   constexpr double never = std::numeric_limits<double>::infinity();
-  for (double Metrics::*const figure :
-       {&Metrics::steady_force_time, &Metrics::permanent_contact_time, &Metrics::initial_contact_time}) {
+  constexpr double Metrics::*times_of_readiness[] = {&Metrics::steady_force_time, &Metrics::permanent_contact_time,
+                                                     &Metrics::initial_contact_time};
+  for (double Metrics::*const figure : times_of_readiness) {
     std::vector<double> times;
     for (const DeviceOutcome& o : of_step) {
       const double time = fails(o) ? never : o.metrics.*figure;

@@ -434,6 +434,21 @@ def links(_):
         yield f"only {count} links are found in the documents"
 
 
+# The files that an addition takes, by CONTRIBUTING.md, are there.
+
+
+def additions(_):
+    rows = read("CONTRIBUTING.md").split("| to add |")[1].split("\n\n")[0].splitlines()[2:]
+    for row in rows:
+        for name in re.findall(r"`([\w.]+/[\w./{},]*)`", row.split("|")[2]):
+            stem, _, ends = name.partition("{")
+            files = [stem + end for end in ends.rstrip("}").split(",")]
+            if "NAME" not in name and not all((ROOT / file).exists() for file in files):
+                yield f"CONTRIBUTING.md: nothing is at {name}"
+    if len(rows) < 10:
+        yield f"CONTRIBUTING.md tells only {len(rows)} things to add"
+
+
 # CITATION.cff names this version, under its licence.
 
 
@@ -451,7 +466,7 @@ def citation(program):
 
 def main():
     case, program = sys.argv[1:]
-    cases = (first_page, howtos, scenes, commands, statuses, members, results, headlines, published, links, citation)
+    cases = (first_page, howtos, scenes, commands, statuses, members, results, headlines, published, links, additions, citation)
     findings = list({function.__name__: function for function in cases}[case](program))
     for finding in findings:
         print(finding)

@@ -356,8 +356,8 @@ TEST(Metrics, TouchesGivePeakForceAndImpactEnergy) {
       {.peak_force = 3e-6, .peak_energy = 2e-12}, {.peak_force = 5e-6, .peak_energy = 1e-12}, {.peak_force = 1e-6}};
   EXPECT_EQ(metrics(trajectory).peak_contact_force, 5e-6);
   EXPECT_DOUBLE_EQ(metrics(trajectory).impact_energy, 3e-12);
-  trajectory.steady_force_time = 2e-4;
-  trajectory.least_force_after_touch = 1e-9;
+  trajectory.force.steady_force_time = 2e-4;
+  trajectory.force.least_force_after_touch = 1e-9;
   EXPECT_EQ(metrics(trajectory).steady_force_time, 2e-4);
   EXPECT_EQ(metrics(trajectory).least_force_after_touch, 1e-9);
   trajectory.touches[1].peak_force = kNaN;

@@ -51,7 +51,7 @@ Trajectory landing(double at, double speed, double height, double flight, double
     t.touches[0].end = std::numeric_limits<double>::quiet_NaN();
   }
   add(end, gap + dip, 0);
-  t.steady_force_time = t.electrical.closed_from = at + dwell + (height > 0 ? flight : 0);
+  t.force.steady_force_time = t.electrical.closed_from = at + dwell + (height > 0 ? flight : 0);
   return t;
 }
 

@@ -261,9 +261,17 @@ std::vector<Case> cases() {
   all.push_back({"modes of a file", scene("mem-gold-modes.toml", {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V",
                                                                   "simulate.duration=100 us", "simulate.accuracy=1e-4"})});
   all.push_back({"bridge that stretches", bridge()});
-  for (const char* gas : {"veijola", "gallis-torczynski", "near-contact", "guo-alexeenko"})
-    all.push_back({gas, gold_at_17_volts({fmt::format("gas.model={}", gas)})});
-  all.push_back({"a film of given damping", gold_at_17_volts({"gas={model=\"linear\", quality_factor=2}"})});
+  for_each_law<Gas>([&]<class Law>(std::type_identity<Law>) {
+    Law law = Law::example();
+    if (is_compressible(law)) return;
+    std::string gas = fmt::format("gas={{model=\"{}\"", Law::name);
+    for (const Field<Law>& field : fields_of<Law>) {
+      if (field.required && std::isfinite(field.in(law)))
+        gas += field.unit.empty() ? fmt::format(", {}={}", field.key, field.in(law))
+                                  : fmt::format(", {}=\"{} {}\"", field.key, field.in(law), field.unit);
+    }
+    all.push_back({std::string(Law::name), gold_at_17_volts({gas + "}"})});
+  });
   all.push_back({"a film on either side", gold_at_17_volts({"gas.far_gap=2 um"})});
   all.push_back({"van der Waals and Casimir force", scene("nem-tin.toml")});
   all.push_back({"van der Waals force", scene("nem-tin.toml", {"dispersion.model=van-der-waals"})});
@@ -513,13 +521,13 @@ TEST(Lanes, FollowABackStopThatIsTouched) {
 
 // Closings one at a time handle what lanes cannot: other laws, other quadrature points, impossible devices, numerical failures.
 TEST(Lanes, LeaveTheRestToOneAtATime) {
-  constexpr const char* other_contact = "a contact other than linear, hysteretic or asperity-uniform at the contact point";
+  constexpr const char* other_law = "the contact law adhesive";
   const std::vector<std::pair<SceneFile, const char*>> others{
       {gold_at_17_volts({"structure.modes=9"}), "more than 8 modes"},
       {scene("nem-casimir.toml"), "a dispersion force between gold"},
-      {without(gold_at_17_volts(), "contact"), other_contact},
-      {gold_at_17_volts({"contact.model=adhesive", "contact.adhesion_energy=0.05 J/m^2"}), other_contact},
-      {gold_at_17_volts({"contact.distribution=pad"}), other_contact},
+      {without(gold_at_17_volts(), "contact"), "no contact"},
+      {gold_at_17_volts({"contact.model=adhesive", "contact.adhesion_energy=0.05 J/m^2"}), other_law},
+      {gold_at_17_volts({"contact.distribution=pad"}), "a contact along its pad"},
       {gold_at_17_volts({"gas.model=reynolds"}), "a compressible gas film"},
       {gold_at_17_volts({"electrode.main.fringing=bao-2001"}), "fringing by bao-2001"},
       {gold_at_17_volts({"simulate.accuracy=1e-12"}), "more than 48 quadrature points"},
@@ -531,7 +539,7 @@ TEST(Lanes, LeaveTheRestToOneAtATime) {
                            "contact.right={gap=\"1.8 um\", at=\"235 um\", model=\"adhesive\", pad_length=\"5 um\", "
                            "asperity_radius=\"100 nm\", asperity_density=\"1e11 1/m^2\", asperity_height=\"100 nm\", "
                            "effective_modulus=\"48 GPa\", adhesion_energy=\"0.05 J/m^2\"}"}),
-       other_contact},
+       other_law},
       {gold_at_17_volts({"metrics.closed_force=1 uN"}), "a key that says when the connection is electrically closed"}};
   for (const auto& [file, why] : others) {
     SCOPED_TRACE(why);

@@ -273,10 +273,10 @@ TEST(ElectricalRecord, OfAForceEndsWhereTheForceIsSteady) {
       const Trajectory t =
           simulate_closing(Switch(device), drives, {.duration = 150_us, .tolerance = 1e-7, .steady_force = threshold});
       ASSERT_EQ(t.status, Status::done) << t.message;
-      EXPECT_EQ(std::isnan(t.electrical.closed_from), std::isnan(t.steady_force_time));
-      if (std::isnan(t.steady_force_time)) continue;
+      EXPECT_EQ(std::isnan(t.electrical.closed_from), std::isnan(t.force.steady_force_time));
+      if (std::isnan(t.force.steady_force_time)) continue;
       ++steady;
-      EXPECT_NEAR(t.electrical.closed_from, t.steady_force_time, 1e-12) << "[s]";
+      EXPECT_NEAR(t.electrical.closed_from, t.force.steady_force_time, 1e-12) << "[s]";
     }
   }
   EXPECT_GE(steady, 5);

@@ -63,17 +63,17 @@ TEST(ForceRecord, IsBracketedByTheKnotsUnderEveryLaw) {
       ASSERT_FALSE(t.touches.empty());
       const Brackets expected = by_knots(t, threshold);
       if (t.points.back().contact_force < threshold) {
-        EXPECT_TRUE(std::isnan(t.steady_force_time));
+        EXPECT_TRUE(std::isnan(t.force.steady_force_time));
         ++lost;
       } else {
-        EXPECT_GE(t.steady_force_time, expected.steady_from);
+        EXPECT_GE(t.force.steady_force_time, expected.steady_from);
         ++steady;
       }
-      EXPECT_LE(t.least_force_after_touch, expected.least + 1e-15) << "[N]: no rounding of the place where it opens";
-      EXPECT_GE(t.least_force_after_touch, expected.least - 0.05 * std::abs(expected.least) - 1e-9);
+      EXPECT_LE(t.force.least_force_after_touch, expected.least + 1e-15) << "[N]: no rounding of the place where it opens";
+      EXPECT_GE(t.force.least_force_after_touch, expected.least - 0.05 * std::abs(expected.least) - 1e-9);
       const Trajectory unasked = simulate_closing(model, drives, {.duration = 150_us, .tolerance = 1e-7});
-      EXPECT_TRUE(std::isnan(unasked.steady_force_time));
-      EXPECT_EQ(unasked.least_force_after_touch, t.least_force_after_touch);
+      EXPECT_TRUE(std::isnan(unasked.force.steady_force_time));
+      EXPECT_EQ(unasked.force.least_force_after_touch, t.force.least_force_after_touch);
       EXPECT_EQ(unasked.points.back().position, t.points.back().position) << "measuring changes nothing";
     }
   }
@@ -106,16 +106,16 @@ TEST(ForceRecord, IsThatOfTheLawAlongTheMotion) {
         before = force;
       }
     }
-    EXPECT_LE(t.least_force_after_touch, least + 1e-12 * hold);
-    EXPECT_NEAR(t.least_force_after_touch, least, 1e-3 * hold);
-    if (std::isnan(t.steady_force_time)) {
+    EXPECT_LE(t.force.least_force_after_touch, least + 1e-12 * hold);
+    EXPECT_NEAR(t.force.least_force_after_touch, least, 1e-3 * hold);
+    if (std::isnan(t.force.steady_force_time)) {
       EXPECT_GT(last_below, t.points.back().time - 1e-9) << "below at the end";
       continue;
     }
     ++inside;
     constexpr double sampled = 5e-9;  // [s]; a fiftieth of a piece
-    EXPECT_NEAR(t.steady_force_time, last_below, sampled);
-    EXPECT_GT(t.steady_force_time, t.touches.front().begin);
+    EXPECT_NEAR(t.force.steady_force_time, last_below, sampled);
+    EXPECT_GT(t.force.steady_force_time, t.touches.front().begin);
   }
   EXPECT_GT(inside, 10);
 }
@@ -135,7 +135,7 @@ TEST(ForceRecord, OfAContactThatPullsIsTheMostThatItPulls) {
     for (const double tolerance : {1e-5, 1e-9}) {
       const Trajectory t = simulate_closing(model, drives, {.duration = 150_us, .tolerance = tolerance});
       ASSERT_GT(t.touches.size(), 1U) << "it leaves its contact";
-      EXPECT_NEAR(t.least_force_after_touch, most, 1e-6 * std::abs(most)) << energy << " J/m^2, " << tolerance;
+      EXPECT_NEAR(t.force.least_force_after_touch, most, 1e-6 * std::abs(most)) << energy << " J/m^2, " << tolerance;
     }
   }
 }
@@ -147,7 +147,7 @@ TEST(ForceRecord, IsNothingWhereTheContactOpens) {
         simulate_closing(test::gold(), std::vector{Signal::constant(volts)}, {.duration = 100_us, .tolerance = 1e-7});
     if (t.touches.size() < 2) continue;
     ++opened;
-    EXPECT_EQ(t.least_force_after_touch, 0) << volts;
+    EXPECT_EQ(t.force.least_force_after_touch, 0) << volts;
   }
   EXPECT_GT(opened, 30);
 }
@@ -155,8 +155,8 @@ TEST(ForceRecord, IsNothingWhereTheContactOpens) {
 TEST(ForceRecord, OfWhatNeverTouchesIsNotKnown) {
   const Trajectory t =
       simulate_closing(test::gold(), std::vector{Signal::constant(5)}, {.duration = 100_us, .steady_force = 1e-9});
-  EXPECT_TRUE(std::isnan(t.steady_force_time));
-  EXPECT_TRUE(std::isnan(t.least_force_after_touch));
+  EXPECT_TRUE(std::isnan(t.force.steady_force_time));
+  EXPECT_TRUE(std::isnan(t.force.least_force_after_touch));
 }
 
 /// A plate without a rebound rests at once: the contact force is that of the electrode less that of the spring.
@@ -174,17 +174,17 @@ TEST(ForceRecord, FollowsAPlateAtRest) {
   ASSERT_EQ(first.touches.size(), 1U);
   const double touch = first.touches[0].begin, hold = first.points.back().contact_force;
   EXPECT_LT(touch, later);
-  EXPECT_EQ(first.steady_force_time, touch);
-  EXPECT_GT(first.least_force_after_touch, 0);
-  const double begun = first.least_force_after_touch;
-  EXPECT_EQ(at(0.99 * begun).steady_force_time, touch);
+  EXPECT_EQ(first.force.steady_force_time, touch);
+  EXPECT_GT(first.force.least_force_after_touch, 0);
+  const double begun = first.force.least_force_after_touch;
+  EXPECT_EQ(at(0.99 * begun).force.steady_force_time, touch);
   const Trajectory between = at((begun + hold) / 2);
-  EXPECT_GT(between.steady_force_time, later);
-  EXPECT_LT(between.steady_force_time, 2 * later);
-  EXPECT_TRUE(std::isnan(at(1.01 * hold).steady_force_time));
+  EXPECT_GT(between.force.steady_force_time, later);
+  EXPECT_LT(between.force.steady_force_time, 2 * later);
+  EXPECT_TRUE(std::isnan(at(1.01 * hold).force.steady_force_time));
   device.contacts.front().model = RigidStop{.restitution = 0.5};
   const Trajectory bouncing = simulate_closing(Switch(device), drives, {.duration = 3 * later, .tolerance = 1e-8});
-  EXPECT_EQ(bouncing.least_force_after_touch, 0) << "it opens";
+  EXPECT_EQ(bouncing.force.least_force_after_touch, 0) << "it opens";
 }
 
 }  // namespace
