@@ -263,7 +263,7 @@ std::vector<Case> cases() {
   all.push_back({"bridge that stretches", bridge()});
   for_each_law<Gas>([&]<class Law>(std::type_identity<Law>) {
     Law law = Law::example();
-    if (is_compressible(law)) return;
+    if (is_compressible(law) || std::is_same_v<Law, LinearGas>) return;  // the example of `linear` bounces for too long
     std::string gas = fmt::format("gas={{model=\"{}\"", Law::name);
     for (const Field<Law>& field : fields_of<Law>) {
       if (field.required && std::isfinite(field.in(law)))
@@ -272,6 +272,7 @@ std::vector<Case> cases() {
     }
     all.push_back({std::string(Law::name), gold_at_17_volts({gas + "}"})});
   });
+  all.push_back({"a film of given damping", gold_at_17_volts({"gas={model=\"linear\", quality_factor=2}"})});
   all.push_back({"a film on either side", gold_at_17_volts({"gas.far_gap=2 um"})});
   all.push_back({"van der Waals and Casimir force", scene("nem-tin.toml")});
   all.push_back({"van der Waals force", scene("nem-tin.toml", {"dispersion.model=van-der-waals"})});
