@@ -36,7 +36,7 @@ class DistributedLaw {
   /// are as long as those of the gap field.
   virtual void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const = 0;
   /// Adds second derivatives of the load at the points on which the force law acts: by deflection twice, by deflection and
-  /// velocity, by velocity twice. Adds nothing at points below the smallest valid gap, where the load continues by its tangent.
+  /// velocity, by velocity twice. Below the smallest valid gap the load continues by its tangent: only the mixed one is not 0.
   virtual void add_curvatures(const GapField& field, double drive, double* by_deflections, double* by_both,
                               double* by_velocities) const = 0;
   /// Returns the integral of the potential per length over the points on which the force law acts, for drive = 1 [J]; 0 for
@@ -112,8 +112,11 @@ class DistributedLawOf final : public DistributedLaw {
                       double* by_velocities) const override {
     const double factor = Law::drive_depends ? drive : 1;
     for (Eigen::Index p = begin_; p < end_; ++p) {
-      const double gap = field.gap[p], velocity = field.velocity[p];
-      if (gap < floor_) continue;
+      // Below floor_ the load is its tangent at floor_. It is linear in the gap, and loads that depend on the velocity are
+      // proportional to it, so that only the mixed derivative is not 0: that at floor_.
+      const bool is_tangent = field.gap[p] < floor_;
+      if (is_tangent && Law::drive_depends) continue;
+      const double gap = std::max(field.gap[p], floor_), velocity = field.velocity[p];
       // Returns a second derivative of the load: once by the variable of the outer dual numbers and once by that of the inner
       // ones. An argument of 1 chooses the gap as this variable, 0 the velocity.
       const auto mixed = [&](double gap_outer, double gap_inner) {
@@ -122,7 +125,7 @@ class DistributedLawOf final : public DistributedLaw {
                   DualOf<Dual>(Dual(velocity, 1 - gap_inner), Dual(1 - gap_outer)))
             .slope.slope;
       };
-      by_deflections[p] += factor * mixed(1, 1);
+      if (!is_tangent) by_deflections[p] += factor * mixed(1, 1);
       if constexpr (!Law::drive_depends) {
         by_both[p] -= factor * mixed(1, 0);  // minus sign: the gap shrinks as the beam deflects
         by_velocities[p] += factor * mixed(0, 0);

@@ -185,7 +185,7 @@ class Switch {
                                        Workspace& work) const;
   /// Returns second derivatives of the sum over modes of multiplier_i q_i'' in the motion before the first touch, by (q, v,
   /// strengths), the modal coordinates, velocities and strengths of the drives: symmetric, 2 modes + drives rows. They are
-  /// exact except for points nearer to an electrode than gap_floor(), where the second derivatives of the load count as 0.
+  /// exact, also below the gaps at which laws are continued by their tangents: loads are linear in the velocity.
   [[nodiscard]] Eigen::MatrixXd free_motion_curvature(const double* q, const double* v, std::span<const double> strengths,
                                                       const double* multipliers, Workspace& work) const;
 

@@ -245,6 +245,11 @@ std::optional<ControlledCourse> FirstTouchProblem::swing(double longest) const {
   };
   const std::optional<Swing> best = quickest_swing(model_, values(pull_), values(release_), longest);
   if (!best) return std::nullopt;
+  if (best->is_overdamped) {
+    std::vector<Signal> signals;
+    for (const double level : values(pull_)) signals.push_back(Signal::constant(level, 0));
+    return flown(signals, 1, longest);
+  }
   ControlledCourse course;
   const auto points = static_cast<double>(best->states.size() - 1);
   const double time = points * best->step;

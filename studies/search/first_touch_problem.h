@@ -59,7 +59,8 @@ class FirstTouchProblem final : public ControlledSystem {
   [[nodiscard]] std::optional<Landing> landing() const;
 
   /// Returns the quickest single swing to the contact: full pull, then full release, so that the contact point turns back as it
-  /// arrives. Nothing if full pull does not reach the contact within `longest` [s].
+  /// arrives. Full pull alone, up to the touch, where the swing is overdamped. Nothing if full pull does not reach the contact
+  /// within `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> swing(double longest) const;
   /// Simulates the motion until first contact under signals of all drives, and returns it with the controls averaged over
   /// `intervals` equal intervals and clamped to their bounds. Nothing if the switch does not make contact within `longest` [s].

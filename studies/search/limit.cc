@@ -77,7 +77,7 @@ class LeastTimeSearch {
   LeastTime from_swing() {
     std::optional<ControlledCourse> swing = first_touch_.swing(longest_time());
     if (!swing) return ended(Status::no_contact, "full pull does not bring the switch to its contact");
-    return from(std::move(*swing), longest_time());
+    return from(std::move(*swing), longest_time(), true);
   }
 
   // Returns waveforms under which the modes come to rest at first contact, one for each of rest_distances, each closer to rest
@@ -103,13 +103,13 @@ class LeastTimeSearch {
     std::optional<ControlledCourse> flown = first_touch_.flown(signals, first_knots, prepared_.duration);
     if (!flown) return ended(Status::no_contact, "the waveform to start with does not bring the switch to its contact");
     const double longest = 2 * flown->time * first_touch_.time_unit();
-    return from(std::move(*flown), longest);
+    return from(std::move(*flown), longest, false);
   }
 
  private:
   [[nodiscard]] double longest_time() const { return longest_swing * 2 * pi / prepared_.model.basis().angular_frequencies()[0]; }
 
-  LeastTime from(ControlledCourse guess, double longest) {
+  LeastTime from(ControlledCourse guess, double longest, bool slows_down) {
     course_ = std::move(guess);
     std::optional<FirstTouchProblem::Landing> landing;
     if (options_.at_rest) {
@@ -117,11 +117,10 @@ class LeastTimeSearch {
       if (!landing) return ended(Status::no_contact, "the hold levels do not keep the switch closed");
     }
     pose(longest, landing);
-    if (landing) {
-      const Status status = come_to_rest(landing->state);
-      if (status != Status::done) return ended(status, status == Status::interrupted ? std::string() : result_.message);
-    }
-    if (const Status status = improve_with_finer_knots(); status != Status::done) return ended(status, result_.message);
+    Status status = slows_down ? slow_down() : Status::done;
+    if (status == Status::done && landing) status = come_to_rest(landing->state);
+    if (status == Status::done) status = improve_with_finer_knots();
+    if (status != Status::done) return ended(status, result_.message);
     return refine_until_simulated();
   }
 
@@ -159,6 +158,21 @@ class LeastTimeSearch {
     if (!course.converged) return Status::numerical_failure;
     course_ = std::move(course);
     return Status::done;
+  }
+
+  // Lowers the permitted speed in steps, by one solution each, where the guess touches far too fast: after full pull through a
+  // thick film. Ipopt needs these intermediate solutions, since the drive has to fall within the last nanometres.
+  Status slow_down() {
+    constexpr double too_fast = 10, step = 3;  // ratios of speeds
+    const double permitted = problem_.at_the_end[1].upper;
+    double speed = first_touch_.tip_speed().dot(course_.states.rightCols<1>());
+    Status status = Status::done;
+    for (const bool slows = speed > too_fast * permitted; slows && speed > permitted && status == Status::done; speed /= step) {
+      problem_.at_the_end[1].upper = speed;
+      status = improve();
+    }
+    problem_.at_the_end[1].upper = permitted;
+    return status;
   }
 
   Status improve_with_finer_knots() {

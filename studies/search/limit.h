@@ -5,8 +5,8 @@
 //
 // The contact point may cross the contact plane only at the end. The optimum is local: the better of two, found from the
 // quickest single swing and from the motion under a given waveform. The swing is full pull, then full release, as a mass on a
-// spring is stopped (Leus & Elata 2008, J. MEMS 17, 236). Drives that the actuator does not vary are at their hold levels from
-// t = 0 on.
+// spring is stopped (Leus & Elata 2008, J. MEMS 17, 236). Through a thick film it is full pull alone; the touch is then slowed
+// down in steps. Drives that the actuator does not vary are at their hold levels from t = 0 on.
 #pragma once
 
 #include <atomic>

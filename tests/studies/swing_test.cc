@@ -99,6 +99,22 @@ TEST(JointSwings, AreNoneOfAnElectrodeAlone) {
   EXPECT_TRUE(joint_rest_to_rest_starts(p, SearchSpace(p, Actuator::electrostatic, "catch", 34.3e-6)).empty());
 }
 
+// The film of a bridge over nitride is a million times thicker at the face than at rest.
+TEST(Swing, OfABridgeOverNitrideIsAPullUntilTheTouch) {
+  const PreparedScene p = prepare(scene("capacitive-bridge.toml", {"structure.modes=2"}), true);
+  const std::vector<double> pull = full_pull(p), none(p.model.drives(), 0.0);
+  const auto swing = quickest_swing(p.model, pull, none, longest(p));
+  ASSERT_TRUE(swing);
+  EXPECT_TRUE(swing->is_overdamped);
+  EXPECT_EQ(swing->releasing_time, 0);
+  const auto touches = [&](double driven) {
+    const std::vector<Signal> signals{signal(Pulse{.levels = {pull[0], 0}, .times = {driven}})};
+    return !simulate_closing(p.model, signals, {.duration = longest(p), .after_contact = 0}).touches.empty();
+  };
+  EXPECT_TRUE(touches(swing->driven_time * (1 + 1e-4)));
+  EXPECT_FALSE(touches(swing->driven_time * (1 - 1e-3)));
+}
+
 TEST(Swing, IsNoneWhereThePullDoesNotReachTheContact) {
   const PreparedScene p = prepare(gold(), true);
   std::vector<double> weak = full_pull(p);
