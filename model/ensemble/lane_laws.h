@@ -140,7 +140,8 @@ class UsualLaws {
       } else {
         force_[k] = Force{{.width = width_[k]}};
       }
-      set_parameters(film_[k], s.film[k], l);
+      set_parameters(parameters_[k], s.film[k], l);
+      film_[k] = law_in_lanes<StripSqueezeFilm>(parameters_[k]);
     }
   }
 
@@ -160,13 +161,12 @@ class UsualLaws {
       load *= weight_[p];
       for (int i = 0; i < capacity; ++i) sum[i] += load * shape_[p][i];
     };
-    auto film = law_in_lanes<StripSqueezeFilm>(film_[0]);
+    StripSqueezeFilmOf<V> film = film_[0];
     Force force = force_[0];
     const int segments = layout_.segments;
     for (int s = 0; s < segments; ++s) {
       const Segment segment = layout_.segment[s];
-      if constexpr (most_stretches > 1)
-        film = law_in_lanes<StripSqueezeFilm>(film_[segment.stretch]), force = force_[segment.stretch];
+      if constexpr (most_stretches > 1) film = film_[segment.stretch], force = force_[segment.stretch];
       if (segment.electrode < 0) {
         if constexpr (has_film) {
           for (int p = segment.begin; p < segment.end; ++p) {
@@ -206,7 +206,8 @@ class UsualLaws {
   V shape_[most_points][capacity], weight_[most_points], rest_gap_[most_points];
   V open_, floor_, width_[most_stretches], thickness_[most_stretches];
   Force force_[most_stretches];
-  V film_[most_stretches][most_parameters];
+  V parameters_[most_stretches][most_parameters];
+  StripSqueezeFilmOf<V> film_[most_stretches];
 };
 
 template <class V>
