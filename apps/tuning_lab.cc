@@ -21,6 +21,7 @@
 #include "base/shortened.h"
 #include "base/trimmed.h"
 #include "base/write_whole.h"
+#include "config/quantity_argument.h"
 #include "document/quantity.h"
 #include "reports/scene_export.h"
 #include "verbs/options.h"
@@ -137,7 +138,7 @@ class HandLab final : public TuningLab {
       const std::string file(trimmed(std::string_view(text).substr(5)));
       return request_.contact ? read_contact_trace(file, *request_.contact) : read_edges_file(file);
     }
-    const Quantity time = parse_quantity(text);
+    const Quantity time = quantity_with_unit(text, dimension::time);
     if (time.dimension != dimension::time || !(time.value > 0))
       throw InvalidInput(fmt::format("{}: must be a time with its unit, such as \"36.1 us\"", visible(text)));
     if (time.value > duration)

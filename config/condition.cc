@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/require.h"
+#include "config/quantity_argument.h"
 #include "config/schema.h"
 #include "config/units.h"
 
@@ -98,13 +99,13 @@ Condition parse_condition(std::string_view text, std::span<const Figure> figures
     return {
         .figure = figures[k], .comparison = sign->comparison, .limit = times.value, .text = std::string(all), .of_step = true};
   }
+  const Dimension due = figures[k].unit.empty() ? dimension::none : parse_quantity("1 " + std::string(figures[k].unit)).dimension;
   Quantity limit;
   try {
-    limit = parse_quantity(value);
+    limit = quantity_with_unit(value, due);
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("{} in '{}'", error.what(), all));
   }
-  const Dimension due = figures[k].unit.empty() ? dimension::none : parse_quantity("1 " + std::string(figures[k].unit)).dimension;
   require(limit.dimension == due, [&] { return fmt::format("{} in '{}' must be {}", names[k], all, describe(due)); });
   require(limit.value != 0 || figures[k].unit.empty(),
           [&] { return fmt::format("the limit of {} in '{}' must not be 0: give a small value with its unit", names[k], all); });

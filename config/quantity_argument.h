@@ -12,12 +12,21 @@
 
 namespace softland {
 
+/// Reads a quantity that should have the dimension `due`. Throws InvalidInput as parse_quantity() does, and for a missing unit;
+/// the caller checks any other dimension.
+[[nodiscard]] inline Quantity quantity_with_unit(std::string_view text, const Dimension& due) {
+  const Quantity read = parse_quantity(text);
+  require(read.dimension != dimension::none || due == dimension::none || text.find('%') != std::string_view::npos,
+          [&] { return fmt::format("no unit (expected {} such as \"{}\")", noun(due), example(due)); });
+  return read;
+}
+
 /// Reads a quantity of this dimension, at least 0 [SI unit]. Throws InvalidRequest that names the option `what`, such as
 /// requested("marker"), the text and the rule.
 [[nodiscard]] inline double quantity_argument(std::string_view what, const std::string& text, const Dimension& due) {
   Quantity given;
   try {
-    given = parse_quantity(text);
+    given = quantity_with_unit(text, due);
   } catch (const InvalidInput& error) {
     throw InvalidRequest(fmt::format("{} {}: {}", what, visible(text), error.what()));
   }

@@ -16,6 +16,7 @@
 #include "base/shortened.h"
 #include "base/split.h"
 #include "config/assumed_spread.h"
+#include "config/quantity_argument.h"
 #include "config/units.h"
 #include "document/quantity.h"
 #include "exchange/generator.h"
@@ -67,7 +68,7 @@ struct Measured {
     require_request(!value, [&] { return fmt::format("{} {}: {} is given twice", option, visible(text), name); });
     Quantity q;
     try {
-      q = parse_quantity(text);
+      q = quantity_with_unit(text, due);
     } catch (const InvalidInput& error) {
       throw InvalidRequest(fmt::format("{} {}: {}", option, visible(text), error.what()));
     }

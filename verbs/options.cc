@@ -39,9 +39,10 @@ double OptionReader::quantity_of(const char* name, const std::string& text, cons
   };
   Quantity q;
   try {
-    q = parse_quantity(text);
-  } catch (const InvalidInput&) {
-    rule(false);
+    q = quantity_with_unit(text, wanted.dimension);
+  } catch (const InvalidInput& error) {
+    rule(wanted.dimension != dimension::none);
+    throw InvalidRequest(fmt::format("{} {}: {}", requested(name), visible(text), error.what()));
   }
   rule(q.dimension == wanted.dimension && wanted.range.contains(q.value));
   return q.value;

@@ -14,6 +14,7 @@
 
 #include "base/engineering.h"
 #include "base/require.h"
+#include "config/quantity_argument.h"
 #include "config/schema.h"
 #include "config/units.h"
 #include "document/text.h"
@@ -44,7 +45,7 @@ void read_sweep(const std::string& option, const std::string& text, std::optiona
   const auto voltage = [&](const std::string& part) {
     Quantity given;
     try {
-      given = parse_quantity(part);
+      given = quantity_with_unit(part, dimension::voltage);
     } catch (const InvalidInput& error) {
       refuse(error.what());
     }
@@ -76,7 +77,7 @@ void set_bias(PreparedScene& p, const std::string& assignment) {
   const Dimension& due = is_factor ? dimension::none : dimension::voltage;
   Quantity given;
   try {
-    given = parse_quantity(assignment.substr(equals + 1));
+    given = quantity_with_unit(assignment.substr(equals + 1), due);
   } catch (const InvalidInput& error) {
     refuse(error.what());
   }

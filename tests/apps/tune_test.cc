@@ -109,7 +109,7 @@ TEST_F(DeviceVerb, BeginsItsRecordsLateByItsTriggerDelay) {
 
 TEST_F(DeviceVerb, NamesTheOptionThatItCannotTake) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused{
-      {{"--edge-error", "50"}, "--edge-error 50: must be a time [s], at least 0, such as "},
+      {{"--edge-error", "50"}, "--edge-error 50: no unit (expected a time such as \"20 us\")"},
       {{"--unseen", "-1 ns"}, "--unseen -1 ns: must be a time [s], at least 0"},
       {{"--gain-error", "x"}, "--gain-error x: "},
       {{"--trigger-delay", "1 V"}, "--trigger-delay 1 V: must be a time [s]"},
@@ -476,7 +476,7 @@ TEST_F(TuneVerb, NamesTheOptionThatItCannotTake) {
       {{"--device", "x", "--by-hand"}, "give either --device COMMAND or --by-hand"},
       {{"--device", "x", "--closings", "0"}, "--closings 0: must be a whole number from 1 on"},
       {{"--device", "x", "--timeout", "0 s"}, "--timeout 0 s: must be above 0 s"},
-      {{"--device", "x", "--timeout", "3"}, "--timeout 3: must be a time [s]"},
+      {{"--device", "x", "--timeout", "3"}, "--timeout 3: no unit (expected a time such as \"20 us\")"},
       {{"--device", "x", "--constrain", "initial_contact_time < 33"}, "--constrain: "},
       {{"--device", "x", "--constrain", "impact_velocity < 1 mm/s"}, "a condition must limit initial_contact_time from above"},
       {{"--device", "x", "--trigger-delay", "1 V"}, "--trigger-delay 1 V: must be a time [s]"},

@@ -66,7 +66,7 @@ TEST(Condition, IsRefusedWithTheReason) {
   EXPECT_EQ(refused("fast"), "'fast' must be a condition: a figure, then <, <=, ==, >= or >, then a value");
   EXPECT_EQ(refused("bounce_cuont == 0"), "unknown figure of merit 'bounce_cuont' (did you mean 'bounce_count'?)");
   EXPECT_EQ(refused("t_i < 60 V"), "initial_contact_time in 't_i < 60 V' must be a time [s]");
-  EXPECT_EQ(refused("t_i < 60"), "initial_contact_time in 't_i < 60' must be a time [s]");
+  EXPECT_EQ(refused("t_i < 60"), "no unit (expected a time such as \"20 us\") in 't_i < 60'");
   EXPECT_EQ(refused("N_B == 0 us"), "bounce_count in 'N_B == 0 us' must be a plain number");
   EXPECT_EQ(refused("t_i <= 0 us"),
             "the limit of initial_contact_time in 't_i <= 0 us' must not be 0: give a small value with its unit");
