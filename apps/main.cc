@@ -17,6 +17,7 @@
 #include "apps/streams.h"
 #include "apps/studies.h"
 #include "apps/verbs/verbs.h"
+#include "base/nearest.h"
 #include "base/require.h"
 #include "base/shell_word.h"
 #include "version.h"
@@ -54,11 +55,27 @@ void describe(CLI::App& app) {
   app.footer(footer);
 }
 
+// Returns a message about the words that no option takes, in the order given: CLI11 reverses them. Proposes the option that
+// was meant.
+std::string not_expected(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining(true);
+  std::string text =
+      words.size() == 1 ? "The following argument was not expected:" : "The following arguments were not expected:";
+  for (const std::string& word : words) text += " " + word;
+  const auto misspelt = std::ranges::find_if(words, [](const std::string& word) { return word.starts_with("--"); });
+  if (misspelt == words.end() || app.get_subcommands().empty()) return text;
+  std::vector<std::string> options;
+  for (const CLI::Option* option : app.get_subcommands().front()->get_options())
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  return text + did_you_mean(misspelt->substr(0, misspelt->find('=')), {options.begin(), options.end()});
+}
+
 // Parses the words of the command line into the options of `app`. Returns false if the words ask for the help or the version,
 // which is then printed: there is no verb to run.
 bool parse(CLI::App& app, std::vector<std::string> words, const std::vector<std::string>& names) {
   if (!words.empty() && !words.front().starts_with("-") && std::ranges::find(names, words.front()) == names.end())
-    throw InvalidInput("unknown verb '" + words.front() + "' (see softland --help)");
+    throw InvalidInput("unknown verb '" + words.front() + "'" + did_you_mean(words.front(), {names.begin(), names.end()}) +
+                       " (see softland --help)");
   try {
     std::reverse(words.begin(), words.end());  // CLI11 expects the words of the command line in reverse order
     app.parse(words);
@@ -71,8 +88,9 @@ bool parse(CLI::App& app, std::vector<std::string> words, const std::vector<std:
     const auto chosen = app.get_subcommands();
     if (chosen.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
       throw InvalidInput("a verb is required: " + in_words(names, " or ") + " (see softland --help)");
-    throw InvalidInput(std::string(error.what()) + " (see softland " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
-                       "--help)");
+    const bool is_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+    throw InvalidInput((is_extra ? not_expected(app) : std::string(error.what())) + " (see softland " +
+                       (chosen.empty() ? "" : chosen.front()->get_name() + " ") + "--help)");
   }
   return false;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/nearest.h"
 #include "base/require.h"
 #include "base/trimmed.h"
 
@@ -15,8 +16,10 @@ namespace {
 
 Target target_of(std::string_view name) {
   const TargetRow* row = find_named(targets, name);
-  require(row != nullptr,
-          [&] { return fmt::format("must be {}, or a weighted sum such as \"0.7 bounce + 0.3 energy\"", listed(targets)); });
+  require(row != nullptr, [&] {
+    return fmt::format("must be {}, or a weighted sum such as \"0.7 bounce + 0.3 energy\"{}", listed(targets),
+                       did_you_mean(name, names_of(targets)));
+  });
   return row->value;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <nlopt.hpp>
 
+#include "base/nearest.h"
 #include "base/require.h"
 #include "optimizers/backends.h"
 
@@ -59,16 +60,18 @@ const Method& find_method(std::string_view name) {
   const auto found =
       std::find_if(all_methods.begin(), all_methods.end(), [&](const Method& method) { return method.name == name; });
   if (found != all_methods.end()) return *found;
-  const std::string there_are = fmt::format("choose one of {}", fmt::join(optimizer_names(), ", "));
+  const auto broken = [&](const std::string& rule) {
+    return InvalidRequest(
+        fmt::format("{} {}: {} one of {}", requested("optimizer"), name, rule, fmt::join(optimizer_names(), ", ")) +
+        did_you_mean(name, {optimizer_names().begin(), optimizer_names().end()}));
+  };
   std::string plain(name);
   for (char& letter : plain)
     letter = letter == '_' ? '-' : letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter + 32) : letter;
   for (const Refusal& refusal : refused_methods) {
-    if (refusal.name == plain) {
-      throw InvalidInput(fmt::format("optimizer \"{}\" is refused: {}; {}", name, refusal.reason, there_are));
-    }
+    if (refusal.name == plain) throw broken(fmt::format("is refused, because {}; choose", refusal.reason));
   }
-  throw InvalidInput(fmt::format("optimizer \"{}\" is unknown; {}", name, there_are));
+  throw broken("must be");
 }
 
 }  // namespace internal

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "base/choice.h"
+#include "base/nearest.h"
 #include "base/range.h"
 #include "base/require.h"
 #include "base/shortened.h"
@@ -243,7 +244,9 @@ class OptionReader {
     const std::string* const text = find(name);
     if (text == nullptr) return;
     const auto* const row = find_named(names, *text);
-    require_request(row != nullptr, [&] { return fmt::format("{} {}: must be {}", requested(name), *text, listed(names)); });
+    require_request(row != nullptr, [&] {
+      return fmt::format("{} {}: must be {}{}", requested(name), *text, listed(names), did_you_mean(*text, names_of(names)));
+    });
     value = row->value;
   }
   template <class T>

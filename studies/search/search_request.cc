@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/nearest.h"
 #include "base/require.h"
 #include "base/shortened.h"
 #include "config/aim.h"
@@ -94,7 +95,9 @@ std::uint64_t devices_of(const SearchRequest& request, std::uint64_t usual, std:
 
 OptimizeOptions options_of(const SearchRequest& request, const SceneFile& scene, const OwnParts& own) {
   const Named<Actuator>* actuator = find_named(actuators, request.actuator);
-  require_field(actuator != nullptr, "actuator", request.actuator, [] { return fmt::format("must be {}", listed(actuators)); });
+  require_field(actuator != nullptr, "actuator", request.actuator, [&] {
+    return fmt::format("must be {}{}", listed(actuators), did_you_mean(request.actuator, names_of(actuators)));
+  });
   const Aim target = own.objective ? Aim(own.objective)
                                    : read(requested("target") + " " + request.target, [&] { return parse_aim(request.target); });
   OptimizeOptions options = usual_options(scene, target, actuator->value);

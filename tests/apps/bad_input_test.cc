@@ -71,6 +71,10 @@ TEST_F(BadInput, Verbs) {
   expect_refused({
       {{}, missing},
       {{"frobnicate"}, "unknown verb 'frobnicate' (see softland --help)"},
+      {{"simulte", "gold.toml"}, "unknown verb 'simulte' (did you mean 'simulate'?) (see softland --help)"},
+      {{"pullin", "gold.toml"}, "unknown verb 'pullin' (did you mean 'pull-in'?) (see softland --help)"},
+      {{"simulate", "gold.toml", "--sett", "a=1"},
+       "The following arguments were not expected: --sett a=1 (did you mean '--set'?) (see softland simulate --help)"},
       {{"--frob"}, missing},
   });
 }
@@ -268,7 +272,7 @@ TEST_F(BadInput, Searches_long) {
   });
   // The tests of optimizers check all names.
   const std::string unknown = here->run(search({"--optimizer", "magic"})).err;
-  EXPECT_TRUE(unknown.starts_with("softland: optimizer \"magic\" is unknown; choose one of auto, ")) << unknown;
+  EXPECT_TRUE(unknown.starts_with("softland: --optimizer magic: must be one of auto, ")) << unknown;
 }
 
 TEST_F(BadInput, CostsNoEarlierResult_optimized) {

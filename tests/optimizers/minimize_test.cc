@@ -230,7 +230,7 @@ TEST_P(Minimize, HasADescriptionOfOneLine) {
 }
 
 const std::string choices = [] {
-  std::string text = "choose one of ";
+  std::string text = "one of ";
   for (const std::string_view name : optimizer_names())
     text += (name == optimizer_names().front() ? "" : ", ") + std::string(name);
   return text;
@@ -239,8 +239,9 @@ const std::string choices = [] {
 TEST(OptimizerNames, AutoComesFirst) { EXPECT_EQ(optimizer_names().front(), "auto"); }
 
 TEST(OptimizerNames, AnUnknownNameIsAnsweredWithTheNamesThereAre) {
-  EXPECT_EQ(message_of(box(1, 0, 1, bowl), {.optimizer = "simplex"}),
-            std::string("optimizer \"simplex\" is unknown; ") + choices);
+  EXPECT_EQ(message_of(box(1, 0, 1, bowl), {.optimizer = "simplex"}), "optimizer simplex: must be " + choices);
+  EXPECT_EQ(message_of(box(1, 0, 1, bowl), {.optimizer = "bobyq"}),
+            "optimizer bobyq: must be " + choices + " (did you mean 'bobyqa'?)");
   EXPECT_THROW(static_cast<void>(optimizer_description("simplex")), InvalidInput);
 }
 
@@ -251,7 +252,7 @@ TEST(OptimizerNames, MethodsThatCannotBeTrustedAreRefusedWithTheReason) {
       {"Praxis", "it is not repeatable"},          {"cobyla", "it can hang between evaluations, where no budget reaches it"}};
   for (const auto& [name, reason] : reasons) {
     EXPECT_EQ(message_of(box(1, 0, 1, bowl), {.optimizer = name}),
-              "optimizer \"" + name + "\" is refused: " + reason + "; " + choices);
+              "optimizer " + name + ": is refused, because " + reason + "; choose " + choices);
   }
 }
 
