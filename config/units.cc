@@ -162,6 +162,33 @@ std::optional<UnitScale> look_up(std::string_view name) {
   return std::nullopt;
 }
 
+/// Returns advice for a unit of wrong case: " (did you mean 'Torr'?)" for "torr". It names the units that differ from `name` in
+/// the case of the fewest letters.
+std::string in_other_case(std::string_view name) {
+  std::size_t least = name.size() + 1;
+  std::string near;
+  const auto compare = [&](const std::string& unit) {
+    std::size_t changed = 0;
+    if (unit.size() != name.size()) return;
+    for (std::size_t i = 0; i < unit.size(); ++i) {
+      if (unit[i] == name[i]) continue;
+      const char lower = static_cast<char>(unit[i] | 0x20);
+      if (lower < 'a' || lower > 'z' || lower != static_cast<char>(name[i] | 0x20)) return;
+      ++changed;
+    }
+    if (changed > least) return;
+    near = (changed < least ? "" : near + " or ") + "'" + unit + "'";
+    least = changed;
+  };
+  for (const Symbol& symbol : symbols) {
+    compare(std::string(symbol.name));
+    for (const Prefix& prefix : prefixes) {
+      if (symbol.takes_prefix) compare(prefix.letter + std::string(symbol.name));
+    }
+  }
+  return near.empty() ? near : fmt::format(" (did you mean {}?)", near);
+}
+
 constexpr std::string_view blanks = " \t";
 
 std::string_view trim(std::string_view text) {
@@ -198,7 +225,7 @@ void apply_factor(UnitScale& scale, std::string_view factor, int sign) {
   const int power = sign * (end == std::string_view::npos ? 1 : parse_power(factor.substr(caret == end ? end + 1 : end), factor));
   if (name == "degC") throw InvalidInput("'degC' has an offset and can only stand alone; use K here");
   const auto unit = look_up(name);
-  if (!unit) throw InvalidInput(fmt::format("unknown unit '{}'", shortened(name)));
+  if (!unit) throw InvalidInput(fmt::format("unknown unit '{}'{}", shortened(name), in_other_case(name)));
   for (std::size_t i = 0; i < scale.dimension.powers.size(); ++i) {
     scale.dimension.powers[i] += power * unit->dimension.powers[i];
     // Limit the power of a base unit: a quantity may be written in base units, and parse_power() must be able to read them.

@@ -197,6 +197,22 @@ INSTANTIATE_TEST_SUITE_P(Units, BadQuantity, testing::Values(
     Bad{"1e308 deg^-9", "1e308 deg^-9 is outside the range of double precision"}));
 // clang-format on
 
+TEST(Unit, OfWrongCaseIsAnsweredWithTheRightOne) {
+  const auto refused = [](const char* text) {
+    try {
+      (void)parse_quantity(text);
+    } catch (const InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused("1 torr"), "unknown unit 'torr' (did you mean 'Torr'?)");
+  EXPECT_EQ(refused("1 KHz"), "unknown unit 'KHz' (did you mean 'kHz'?)");
+  EXPECT_EQ(refused("1 Mv"), "unknown unit 'Mv' (did you mean 'MV'?)");
+  EXPECT_EQ(refused("1 pa"), "unknown unit 'pa' (did you mean 'Pa' or 'pA'?)");
+  EXPECT_EQ(refused("1 furlong"), "unknown unit 'furlong'");
+}
+
 TEST(Units, EveryPrefixGoesWithEveryUnitThatTakesOne) {
   struct Prefix {
     std::string text;
