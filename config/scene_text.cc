@@ -114,6 +114,18 @@ void write_section(std::string& out, const toml::table& table, const std::string
   }
 }
 
+// Returns true if a text without closing quote ran to the end of its line, which the parser takes for a forbidden control
+// character, or to the end of the file.
+bool is_unclosed(std::string_view toml, const toml::parse_error& error) {
+  const std::string_view what = error.description();
+  const auto says = [&](std::string_view words) { return what.find(words) != std::string_view::npos; };
+  if (!says("string:") || says("multi-line")) return false;
+  if (says("end-of-file")) return true;
+  for (auto line = error.source().begin.line; line > 1; --line) toml.remove_prefix(toml.find('\n') + 1);
+  const auto is_control = [](char c) { return c >= 0 && c < ' ' && c != '\t' && c != '\r'; };
+  return says("control characters") && std::ranges::none_of(toml.substr(0, toml.find('\n')), is_control);
+}
+
 }  // namespace
 
 nlohmann::json to_json(const toml::node& node) {
@@ -144,6 +156,10 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
+    if (is_unclosed(text, error)) {
+      throw InvalidInput(fmt::format("{}:{}:{}: not TOML: the text is not closed on line {}: its closing quote is missing", name,
+                                     at.line, at.column, at.line));
+    }
     // A quantity without quotes, as in length = 2 um, is a common error that the message of the parser does not explain.
     const bool may_miss_quotes = error.description().find("expected a comment or whitespace") != std::string_view::npos;
     throw InvalidInput(fmt::format("{}:{}:{}: not TOML: {}{}", name, at.line, at.column, shortened(error.description(), 200),
