@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/choice.h"
 #include "base/read_file.h"
 #include "base/require.h"
 #include "reports/closing_record.h"
@@ -39,8 +40,8 @@ SceneFile scene_of_result(const std::string& result) {
       std::error_code ignored;
       return fs::exists(path / name, ignored);
     });
-    require(found != names.end(),
-            fmt::format("{}: must hold one of {}; name the folder of --out", result, fmt::join(names, ", ")));
+    require(found != names.end(), fmt::format("{}: is a folder without {}; give a scene file, such as {}, or the folder of --out",
+                                              result, in_words(names, " or "), (path / "NAME.toml").string()));
     path /= *found;
   }
   if (path.extension() != ".json") return SceneFile::load(path);

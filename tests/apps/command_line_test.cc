@@ -997,7 +997,10 @@ TEST(Scenes, AreTakenFromResults_optimized) {
   fs::create_directory(here.path() / "empty");
   const Outcome empty = here.run({"simulate", "empty"});
   EXPECT_EQ(empty.status, 2);
-  EXPECT_THAT(empty.err, HasSubstr("empty: must hold one of result.json, best.toml, release.toml; name the folder of --out"));
+  EXPECT_THAT(
+      empty.err,
+      HasSubstr(
+          "empty: is a folder without result.json, best.toml or release.toml; give a scene file, such as empty/NAME.toml, or the folder of --out"));
 }
 
 // A pin is renamed if its name has another meaning in the model, in SPICE or in Verilog-A, and a message says so.

@@ -229,7 +229,9 @@ TEST_F(Start, RefusesWhatTheSearchCannotBeginWith) {
   refused(with("none.toml"), "none.toml: cannot be read: No such file or directory");
   refused(with(""), "--start: must not be empty");
   fs::create_directory(at("folder"));
-  refused(with("folder"), "folder: must hold one of result.json, best.toml, release.toml; name the folder of --out");
+  refused(
+      with("folder"),
+      "folder: is a folder without result.json, best.toml or release.toml; give a scene file, such as folder/NAME.toml, or the folder of --out");
   EXPECT_FALSE(fs::exists(at("out"))) << "nothing is begun";
 }
 
