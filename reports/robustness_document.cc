@@ -231,22 +231,28 @@ ReportSection statistics_section(const RobustnessRecord& found) {
     TableRow& row = table.rows.emplace_back(TableRow{std::move(name)});
     for (const DriveRecord& d : found.drives) row.emplace_back(cell(d), &d == &found.drives.back() ? "own" : "");
   };
+  bool has_all_bounds = true;
   add("Devices that close", [](const DriveRecord& d) { return yield_text(d.closing); });
   if (some_collapse(found)) add("Collapse onto the electrode", [](const DriveRecord& d) { return yield_text(d.collapsed); });
   add("Bounce-free", [](const DriveRecord& d) { return yield_text(d.bounce_free); });
   for (const Figure& f : device_figures) {
     if (!is_had(found, f)) continue;
     for (const std::size_t q : {std::size_t{1}, std::size_t{2}}) {
-      add(label_of(f) + (q == 1 ? ": median" : ": 95th percentile"),
-          [&](const DriveRecord& d) { return quantile_text(d.figures[f].quantiles[q], f.unit); });
+      add(label_of(f) + (q == 1 ? ": median" : ": 95th percentile"), [&](const DriveRecord& d) {
+        const EstimatedQuantile& one = d.figures[f].quantiles[q];
+        if (std::isfinite(one.value) && !(std::isfinite(one.interval.low) && std::isfinite(one.interval.high)))
+          has_all_bounds = false;
+        return quantile_text(one, f.unit);
+      });
     }
   }
   return {.id = "figures",
           .heading = "Figures",
           .parts = {std::move(table),
                     Paragraph{.text = fmt::format(
-                                  "In brackets: 95 % confidence. Seed {}, {} points, window {}, integrator tolerance {}. {}",
-                                  found.seed, name_of(point_sets, found.points), quantity(found.duration, "s", 4),
+                                  "In brackets: 95 % confidence{}. Seed {}, {} points, window {}, integrator tolerance {}. {}",
+                                  has_all_bounds ? "" : "; — where this number of devices gives no finite bound", found.seed,
+                                  name_of(point_sets, found.points), quantity(found.duration, "s", 4),
                                   internal::scientific(found.tolerance), worst_prose),
                               .is_note = true},
                     Paragraph{.text = internal::window_prose(found.windows), .is_note = true}}};
@@ -344,9 +350,9 @@ std::pair<std::string, std::string> headline_of(const RobustnessRecord& found) {
   const DriveRecord &step = found.drives.front(), &own = found.drives.back();
   const auto words = [&](const DriveRecord& d) {
     return fmt::format(
-        "{} of {} devices close bounce-free; the 95th percentile is {} for the impact velocity and {} for the highest rebound",
-        percent(d.bounce_free.value), found.devices, quantity(quantile_95(d, drawn_figures[0]).value, "m/s"),
-        quantity(quantile_95(d, drawn_figures[1]).value, "m"));
+        "{} of {} {} bounce-free; the 95th percentile is {} for the impact velocity and {} for the highest rebound",
+        percent(d.bounce_free.value), internal::devices_text(found.devices), found.devices == 1 ? "closes" : "close",
+        quantity(quantile_95(d, drawn_figures[0]).value, "m/s"), quantity(quantile_95(d, drawn_figures[1]).value, "m"));
   };
   if (found.drives.size() == 1) return {"Under the plain step " + words(step) + ".", ""};
   return {words(own), fmt::format("; under the plain step these figures are {}, {} and {}.", percent(step.bounce_free.value),

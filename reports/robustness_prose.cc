@@ -45,6 +45,8 @@ std::string outside_prose(const Robustness& found) {
       why.find(".span = ") == std::string::npos ? "" : " A span up to \"tip\", or in percent, follows the length.");
 }
 
+std::string devices_text(std::uint64_t devices) { return fmt::format("{} device{}", devices, devices == 1 ? "" : "s"); }
+
 std::string window_prose(const HoldWindows& windows) {
   constexpr int digits = 4;
   std::string words;
@@ -56,8 +58,8 @@ std::string window_prose(const HoldWindows& windows) {
                  : fmt::format("{} to {}", quantity(window.lower, "V", digits), quantity(window.upper, "V", digits));
   }
   if (words.empty()) return words;
-  return fmt::format("Hold voltages that keep {:.0f} % of {} devices closed, between release and collapse: {}.", 100 * held_share,
-                     windows.devices, words);
+  return fmt::format("Hold voltages that keep {:.0f} % of {} closed, between release and collapse: {}.", 100 * held_share,
+                     devices_text(windows.devices), words);
 }
 
 std::string calibration_prose(const Calibration& c) {

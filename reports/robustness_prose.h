@@ -17,6 +17,8 @@ namespace softland::internal {
 /// `name`.
 [[nodiscard]] std::string shown_drive(const std::string& name);
 
+/// Returns a number of devices in words: "1 device", "2000 devices".
+[[nodiscard]] std::string devices_text(std::uint64_t devices);
 /// Describes the process variation in words: "structure.thickness ± 2 % (normal), ...".
 [[nodiscard]] std::string spread_prose(const DeviceSpread& spread);
 /// Returns a sentence about the errors of the voltage sources that vary between devices; empty for exact sources.

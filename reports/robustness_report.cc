@@ -123,9 +123,8 @@ std::string about_prose(const RobustnessReport& report) {
   const DeviceSpread& spread = report.nominal.scene.spread;
   const Calibration calibration = found.drives.empty() ? Calibration{} : found.drives.back().known.calibration();
   return fmt::format(
-      "{}{} devices under process variation ({} points): {}. {}{}{}",
-      report.spread_assumed ? std::string(assumed_prose) + " " : "", found.devices, name_of(point_sets, report.options.points),
-      internal::spread_prose(spread),
+      "{}{} under process variation ({} points): {}. {}{}{}", report.spread_assumed ? std::string(assumed_prose) + " " : "",
+      internal::devices_text(found.devices), name_of(point_sets, report.options.points), internal::spread_prose(spread),
       calibration.is_empty()
           ? "All are driven with the voltages of the nominal design."
           : "The plain step has the voltages of the nominal design; every other drive is scaled by per-device calibration: " +

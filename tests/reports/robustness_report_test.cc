@@ -15,6 +15,7 @@
 
 #include "document/text.h"
 #include "reports/box_and_chaos_report.h"
+#include "reports/estimates.h"
 #include "studies/closing/auto_settings.h"
 
 namespace softland::robustness_report_test {
@@ -63,6 +64,16 @@ const Study& study() {
     return s;
   }();
   return made;
+}
+
+TEST(Quantile, ShowsADashForABoundThatFewDevicesDoNotGive) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const auto text = [](double low, double high) {
+    return internal::quantile_text({.value = 37.4e-6, .interval = {low, high}}, "s");
+  };
+  EXPECT_EQ(text(36.7e-6, 38e-6), "37.4\u00a0µs (36.7 to 38)");
+  EXPECT_EQ(text(36.7e-6, infinite), "37.4\u00a0µs (36.7 to —)");
+  EXPECT_EQ(text(-infinite, infinite), "37.4\u00a0µs (—)");
 }
 
 TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth_optimized) {
