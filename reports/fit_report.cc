@@ -93,8 +93,8 @@ std::vector<std::string> fit_prose(const Fit& fit) {
   for (const WeakDirection& weak : fit.estimate.weak) all.push_back(weak_prose(fit, weak));
   if (!fit.next.empty() && fit.next.front().reduction > 0.01) {
     const NextMeasurement& best = fit.next.front();
-    all.push_back(fmt::format("The best next measurement is the {} to {}, which reduces the standard errors by {}.", best.name,
-                              quantity(best.error, row_of(best.what).unit, 2), internal::percent(best.reduction)));
+    all.push_back(fmt::format("The best next measurement is the {}, measured to ±{}, which reduces the standard errors by {}.",
+                              best.name, quantity(best.error, row_of(best.what).unit, 2), internal::percent(best.reduction)));
   }
   all.push_back(fit.starts == 1
                     ? "There was one search, from the values of the scene."
@@ -149,10 +149,11 @@ ReportTable correlation_table(const FitRecord& fit) {
 
 ReportTable next_table(const FitRecord& fit) {
   constexpr std::size_t most = 8;
-  ReportTable table{.head = {"Measurement", "Error", "Reduction of the standard errors"}, .rows = {}};
+  ReportTable table{.head = {"Measurement", "Measured to", "Reduction of the standard errors"}, .rows = {}};
   for (const NextMeasurement& one : fit.next) {
     if (table.rows.size() == most) break;
-    table.rows.push_back({one.name, quantity(one.error, row_of(one.what).unit, 2), {internal::percent(one.reduction), "own"}});
+    table.rows.push_back(
+        {one.name, "±" + quantity(one.error, row_of(one.what).unit, 2), {internal::percent(one.reduction), "own"}});
   }
   return table;
 }

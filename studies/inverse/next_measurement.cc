@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/engineering.h"
@@ -29,15 +30,22 @@ std::vector<PossibleMeasurement> possible_measurements(const PreparedScene& p) {
     add("capacitance at 0 V" + of, {.what = Measurable::capacitance, .drive = k}, 0, of_capacitance);
     if (p.model.has_contact()) add("release voltage" + of, {.what = Measurable::release, .drive = k}, 0, of_volts);
     if (!std::isfinite(volts)) continue;
+    const std::optional<DriverLimits>& limits = p.drives[k].limits;
+    const auto is_allowed = [&](double level) {
+      return !limits || (level >= limits->min_voltage && level <= limits->max_voltage);
+    };
     const auto rounded = [](double v) { return std::stod(fmt::format("{:.3g}", v)); };
     const double half = rounded(0.8 * volts);
-    add(fmt::format("capacitance at {}{}", engineering(half, "V", 4), of),
-        {.what = Measurable::capacitance, .drive = k, .level = half}, 0, of_capacitance);
-    add(fmt::format("resonance at {}{}", engineering(half, "V", 4), of),
-        {.what = Measurable::frequency, .drive = k, .level = half}, 0, of_frequency);
+    if (is_allowed(half)) {
+      add(fmt::format("capacitance at {}{}", engineering(half, "V", 4), of),
+          {.what = Measurable::capacitance, .drive = k, .level = half}, 0, of_capacitance);
+      add(fmt::format("resonance at {}{}", engineering(half, "V", 4), of),
+          {.what = Measurable::frequency, .drive = k, .level = half}, 0, of_frequency);
+    }
     if (!p.model.has_contact()) continue;
     for (const double over : {1.1, 1.5, 2.0, 3.0}) {
       const double level = rounded(over * volts);
+      if (!is_allowed(level)) continue;
       add(fmt::format("closing time at {}{}", engineering(level, "V", 4), of),
           {.what = Measurable::closing_time, .drive = k, .level = level}, usual_time_error, 0);
     }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "scenes.h"
 #include "studies/inverse/estimate.h"
 #include "studies/inverse/fitted_scene.h"
+#include "studies/inverse/next_measurement.h"
 #include "studies/inverse/trace_windows.h"
 
 namespace softland::fit_test {
@@ -472,6 +474,17 @@ TEST(LeastSquares, FindsTheMinimumOfRosenbrocksValleyFromManyStarts) {
                  [](const LeastSquaresEnd& a, const LeastSquaresEnd& b) { return std::abs(a.x[0] - b.x[0]) < 1e-4; });
   EXPECT_EQ(ends.minima, 1U);
   for (const LeastSquaresEnd& end : ends.ends) EXPECT_NEAR(end.x[0], 1, 1e-6);
+}
+TEST(NextMeasurement, KeepsToTheLimitsOfTheDrivers) {
+  const auto largest_level = [](const PreparedScene& p) {
+    double largest = 0;
+    for (const PossibleMeasurement& one : possible_measurements(p)) {
+      if (std::isfinite(one.instrument.level)) largest = std::max(largest, one.instrument.level);
+    }
+    return largest;
+  };
+  EXPECT_GT(largest_level(prepare(plate())), 110);
+  EXPECT_LE(largest_level(prepare(plate({"driver.main.max_voltage=110 V"}))), 110);
 }
 TEST(LeastSquares, PassesOnWhatItsFunctionThrows) {
   SKIP_WITHOUT_CERES();
