@@ -14,6 +14,7 @@
 #include "reports/drive_demand.h"
 #include "reports/figure_text.h"
 #include "reports/record.h"
+#include "studies/closing/hold.h"
 
 namespace softland::internal {
 namespace {
@@ -172,7 +173,8 @@ Headline headline(const ClosingRecord& result) {
           : " It does not stay closed: under the hold voltages the beam collapses onto the electrode in the end.";
   if (!result.search) {
     if (result.status == "interrupted") return {"The simulation was interrupted.", ""};
-    return {capitalised(closing_clause({.subject = "the switch"}, result.best, window)) + "." + rest, ""};
+    const bool is_held = std::ranges::find(result.warnings, not_held) == result.warnings.end();
+    return {capitalised(closing_clause({.subject = "the switch"}, result.best, window, is_held)) + "." + rest, ""};
   }
   if (result.status == "collapsed_at_rest")
     return {"The switch has no stable open equilibrium to start from at the voltages before t = 0.", ""};

@@ -122,7 +122,8 @@ std::string opening_on_command(const FigureValues& figures) {
                                       : ", and has not come to rest when the window ends");
 }
 
-std::string landing_prose(const Actor& actor, const RunRecord& run, const FigureValues& figures, const std::string& end) {
+std::string landing_prose(const Actor& actor, const RunRecord& run, const FigureValues& figures, const std::string& end,
+                          bool is_held) {
   const double height = rebound_height(figures);
   if (is_clean(figures)) {
     const std::string words = closes(actor, "bounce-free at " + first_touch(figures));
@@ -136,6 +137,7 @@ std::string landing_prose(const Actor& actor, const RunRecord& run, const Figure
     words += ", then rebounds by up to " + quantity(height, "m");
   }
   if (settles(figures)) return words + " and settles after " + settling(figures, run.errors);
+  if (!is_held) return words + " and does not stay closed: its hold voltage is below the release voltage";
   if (std::isfinite(figures[&Metrics::open_command])) return words + " and has not settled when it is commanded to open";
   return words + " and has not settled when the window ends" + (end.empty() ? "" : " at " + end) +
          " (later bounces are not counted)";
@@ -143,7 +145,7 @@ std::string landing_prose(const Actor& actor, const RunRecord& run, const Figure
 
 }  // namespace
 
-std::string closing_clause(const Actor& actor, const RunRecord& run, double window) {
+std::string closing_clause(const Actor& actor, const RunRecord& run, double window, bool is_held) {
   if (run.status == "collapsed_at_rest")
     return moving(actor) +
            " has no stable equilibrium to start from at the voltages before t = 0 (an open one, unless before_state asks for a "
@@ -172,7 +174,7 @@ std::string closing_clause(const Actor& actor, const RunRecord& run, double wind
         "{} reaches the contact plane at {} with {}; the run ends there, because the scene has no [contact] section",
         moving(actor), first_touch(figures), impact(figures));
   }
-  return landing_prose(actor, run, figures, end) + opening_on_command(figures);
+  return landing_prose(actor, run, figures, end, is_held) + opening_on_command(figures);
 }
 
 std::string landing_clause(const std::string& subject, const RunRecord& run) {

@@ -31,8 +31,9 @@ struct Actor {
   std::string subject;
   std::string object = {};  ///< object of the clause; empty: the subject is the switch itself
 };
-/// Describes how a run closes, as a clause without full stop; `window` is the simulated time [s].
-[[nodiscard]] std::string closing_clause(const Actor& actor, const RunRecord& run, double window);
+/// Describes how a run closes, as a clause without full stop; `window` is the simulated time [s]. `is_held` is false if the hold
+/// levels are known to be too low to keep the switch closed.
+[[nodiscard]] std::string closing_clause(const Actor& actor, const RunRecord& run, double window, bool is_held = true);
 /// Describes how the switch touches its contact in a run, and what follows, as a clause about `subject`, such as "with the
 /// plain step the switch"; empty if the run has no figures of merit.
 [[nodiscard]] std::string landing_clause(const std::string& subject, const RunRecord& run);

@@ -5,6 +5,7 @@
 #include "reports/closing_record.h"
 #include "reports/figure_text.h"
 #include "sample_result.h"
+#include "studies/closing/hold.h"
 
 namespace softland::internal {
 namespace {
@@ -71,6 +72,10 @@ TEST(Headline, SaysWhenASwitchHasNotSettled) {
       sentence(result),
       "The switch first touches at 23.2 µs, then bounces about 57 times up to 803 nm and has not settled when the window ends at "
       "600 µs (later bounces are not counted).");
+  result["warnings"] = {not_held};
+  EXPECT_EQ(sentence(result),
+            "The switch first touches at 23.2 µs, then bounces about 57 times up to 803 nm and does not stay closed: its hold "
+            "voltage is below the release voltage.");
 }
 
 TEST(Headline, QuotesIllConditionedFiguresWithAbout) {
