@@ -110,7 +110,7 @@ SearchRun::SearchRun(const Common& c, StoredSearch& search, const std::optional<
 std::string SearchRun::duration_prose(int jobs, double max_seconds) const {
   if (!estimate_) return {};
   const SearchEstimate& e = *estimate_;
-  std::string text = "; a closing takes " + internal::quantity(e.closing, "s");
+  std::string text = "; simulating a closing takes " + internal::quantity(e.closing, "s");
   if (std::isfinite(max_seconds)) return text;
   const double seconds = e.seconds / std::max(1, jobs), minute = 60, hour = 3600;
   text += seconds < 2 * minute ? fmt::format(", all about {:.0f} s", std::max(1.0, seconds))

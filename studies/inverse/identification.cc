@@ -323,7 +323,7 @@ IdentificationStudy identify(SceneFile file, const IdentificationOptions& option
   const std::vector<Waveform> recipe = nominal.waveforms();
   require(!same_drives(nominal.commanded(recipe), setting.baseline_scene.signals()), [&] {
     return fmt::format(
-        "{}: its drive is the plain step, which lands no device softly: there is no waveform to pin. Give what "
+        "{}: its drive is the plain step, which lands no device softly: there is no waveform to calibrate. Give what "
         "softland optimize has found",
         nominal.scene.file.name());
   });
@@ -349,7 +349,7 @@ IdentificationStudy identify(SceneFile file, const IdentificationOptions& option
   for (GivenUnits& given_units : predictions_by_figures(study, options.seed)) all.push_back(std::move(given_units));
   for (std::size_t i = 0; i < all.size() && !progress.stopped(); ++i) {
     judge_prediction(all[i], cost, recipe, options.jobs, progress);
-    progress.tell("judging what is told", static_cast<double>(i + 1) / static_cast<double>(all.size()));
+    progress.tell("evaluating sets of measurements", static_cast<double>(i + 1) / static_cast<double>(all.size()));
   }
   study.interrupted = progress.stopped();
   for (std::size_t i = 0; i < all.size(); ++i)

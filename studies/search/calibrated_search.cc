@@ -81,7 +81,7 @@ CalibratedSearch RobustSearch::in_measured_units(const ChosenFrom& winner, const
   const auto found = searched_in(winner, nominal, std::array{coarse, times ? by_time : fine});
   if (!found[0]) return all;
   const auto row = [&](const char* name, const DriveWaveforms& waveforms, const Calibration& knowledge, bool is_searched) {
-    progress_.tell("verdict on devices that are measured", static_cast<double>(all.rows.size()) / most_rows);
+    progress_.tell("evaluating on measured devices", static_cast<double>(all.rows.size()) / most_rows);
     all.rows.push_back(row_of(name, waveforms, knowledge, is_searched));
   };
   row("Vdp to 1 %", *found[0], coarse, true);
@@ -199,7 +199,7 @@ std::vector<CalibrationError> RobustSearch::judged_by_error(const std::vector<Dr
     }
     progress_.throw_if_stopped();
     judged.push_back(best);
-    progress_.tell("verdict by the error of Vdp", static_cast<double>(judged.size()) / errors_of_pull_in.size());
+    progress_.tell("evaluating errors of the measured Vdp", static_cast<double>(judged.size()) / errors_of_pull_in.size());
   }
   return judged;
 }

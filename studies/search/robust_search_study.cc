@@ -205,7 +205,7 @@ class RobustSearchStudy {
 
   void judge() {
     const CalibratedSearch measured = searched_.in_measured_units(result_->candidates.front(), nominal_waveforms());
-    tell("verdict on fresh devices", 0);
+    tell("evaluating on new devices", 0);
     result_->free = searched_.free();
     result_->approach = searched_.approach();
     make_choices();

@@ -84,7 +84,8 @@ void judge_front(RobustSearchResult& result, RobustSearch& search, const Progres
   const RobustCost fresh = search.verdict_devices(search.known());
   for (const ChosenFrom* one : kept) {
     progress.throw_if_stopped();
-    progress.tell("verdict on candidates", static_cast<double>(result.findings.front.size()) / static_cast<double>(kept.size()));
+    progress.tell("evaluating candidates on new devices",
+                  static_cast<double>(result.findings.front.size()) / static_cast<double>(kept.size()));
     const std::vector<DeviceOutcome> outcomes = search.closed(fresh, one->waveforms);
     result.findings.front.push_back({.first_touch = quantile_95(outcomes, key_of(&Metrics::initial_contact_time)),
                                      .impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity)),

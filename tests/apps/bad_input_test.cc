@@ -156,11 +156,11 @@ TEST_F(BadInput, Options) {
       {{"pull-in", "gold.toml", "--out", "swept", "--sweep", "0 V:20:9"},
        "--sweep 0 V:20:9: no unit (expected a voltage such as \"45 V\")"},
       {{"pull-in", "gold.toml", "--out", "swept", "--sweep", "2 V:2 V:9"}, "--sweep 2 V:2 V:9: FIRST and LAST must differ"},
+      {{"export", "gold.toml", "--measured", "Vdp=14"}, "--measured Vdp = 14: no unit (expected a voltage such as \"45 V\")"},
       {{"export", "gold.toml", "--device-vdp", "3 A"}, "--device-vdp 3 A: must be a voltage [V] above 0, such as \"45 V\""},
       {{"export", "gold.toml", "--device-frequency", "0 Hz"},
        "--device-frequency 0 Hz: must be a frequency [Hz] above 0, such as \"30 kHz\""},
       {{"robustness", "gold.toml", "--calibrate", "Vdp:99 %"}, "--set calibration.Vdp.error=\"99 %\": must be in [0, 0.5]"},
-      {{"export", "gold.toml", "--measured", "Vdp=14"}, "--measured Vdp = 14: no unit (expected a voltage such as \"45 V\")"},
       {{"robustness", "gold.toml", "--calibrate", "Vdp in 1 classes"},
        "--set calibration.classes=1: must be a whole number from 2 to 256"},
       {{"robustness", "gold.toml", "--calibrate", "Vdp in many classes"},
@@ -177,7 +177,7 @@ TEST_F(BadInput, Options) {
       {{"calibrate", "gold.toml", "--steps", "1.2,1.1"},
        "--steps 1.2,1.1: must be increasing multiples of Vdp from 1 to 10, such as 1.1,1.25,1.5"},
       {{"calibrate", "gold.toml", "--quiet"},
-       "gold.toml: its drive is the plain step, which lands no device softly: there is no waveform to pin. Give what softland "
+       "gold.toml: its drive is the plain step, which lands no device softly: there is no waveform to calibrate. Give what softland "
        "optimize has found"},
       {{"robustness", "gold.toml", "--samples", "0"}, "--samples 0: must be a whole number from 1 on"},
       {{"robustness", "gold.toml", "--samples", "3000000000"}, "--samples 3000000000: must be at most 2147483648"},

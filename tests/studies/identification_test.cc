@@ -104,7 +104,7 @@ TEST(Measurements, WithErrorsHaveLessValue_optimized) {
 TEST(Measurements, KeepWhatIsJudgedWhenStopped_optimized) {
   std::atomic<bool> stop = false;
   Progress progress{.stop = &stop, .report = [&](std::string_view what, double part) {
-                      if (what.starts_with("judging") && part > 0.3) stop = true;
+                      if (what.starts_with("evaluating") && part > 0.3) stop = true;
                     }};
   const IdentificationStudy part = identify(recipe(), quick(1), progress);
   EXPECT_TRUE(part.interrupted);
