@@ -61,17 +61,15 @@ const Method& find_method(std::string_view name) {
       std::find_if(all_methods.begin(), all_methods.end(), [&](const Method& method) { return method.name == name; });
   if (found != all_methods.end()) return *found;
   const auto broken = [&](const std::string& rule) {
-    return InvalidRequest(
-        fmt::format("{} {}: {} one of {}", requested("optimizer"), name, rule, fmt::join(optimizer_names(), ", ")) +
-        did_you_mean(name, {optimizer_names().begin(), optimizer_names().end()}));
+    return fmt::format("{} {}: {} one of {}", requested("optimizer"), name, rule, fmt::join(optimizer_names(), ", "));
   };
   std::string plain(name);
   for (char& letter : plain)
     letter = letter == '_' ? '-' : letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter + 32) : letter;
   for (const Refusal& refusal : refused_methods) {
-    if (refusal.name == plain) throw broken(fmt::format("is refused, because {}; choose", refusal.reason));
+    if (refusal.name == plain) throw InvalidRequest(broken(fmt::format("is refused, because {}; choose", refusal.reason)));
   }
-  throw broken("must be");
+  throw InvalidRequest(broken("must be") + did_you_mean(name, {optimizer_names().begin(), optimizer_names().end()}));
 }
 
 }  // namespace internal
