@@ -108,6 +108,15 @@ std::string of_devices_that_fail(const ClosingRecord& result) {
   return words;
 }
 
+// Returns a sentence on where best.toml comes from, if the chart of the search shows the search for the nominal design.
+std::string origin_of_best(const ClosingRecord& result) {
+  const DevicesFindings* const devices = result.devices();
+  if (devices == nullptr) return {};
+  if (!devices->better_than_plain_step) return " best.toml is the plain step.";
+  return devices->measure == "drawing" ? " best.toml was chosen among its waveforms, by their figures on the devices."
+                                       : " best.toml comes from the search over devices, which this chart does not show.";
+}
+
 std::string laws_caption(const std::vector<ConfirmationRecord>& laws) {
   std::string names;
   for (const ConfirmationRecord& law : laws) names += (names.empty() ? "" : ", ") + law.name.substr(law.name.find(' ') + 1);
@@ -298,8 +307,9 @@ std::string waveform_caption(const ClosingRecord& result, const std::string& dri
 
 std::string search_caption(const ClosingRecord& result, const SearchRecord& search) {
   const std::string whole_name = search.course.value_name.empty() ? "cost" : search.course.value_name;
-  // The name of the minimised value may end with ", on the nominal device" or the like: the caption needs only "cost".
+  // A search over devices records the evaluations of its search for the nominal design: ", on the nominal design" ends the name.
   const std::string name = whole_name.substr(0, whole_name.find(','));
+  const bool is_of_nominal = name != whole_name;
   const double own = result.best.cost;
   double first = std::numeric_limits<double>::quiet_NaN();
   double last = first;
@@ -315,13 +325,16 @@ std::string search_caption(const ClosingRecord& result, const SearchRecord& sear
   }
   std::string words = capitalised(name) + " of every waveform tried (dots) and of the best so far (line)";
   const double step = search.baseline.cost;
-  words += std::isfinite(step) ? fmt::format("; that of the plain step is {}.", plain_number(step)) : ".";
+  words += is_of_nominal         ? " in the search for the nominal design alone."
+           : std::isfinite(step) ? fmt::format("; that of the plain step is {}.", plain_number(step))
+                                 : ".";
   if (!std::isfinite(first)) return words;
   words += std::isfinite(search.evaluations) ? fmt::format(" In {} evaluations the {}", whole(search.evaluations), name)
                                              : " The " + name;
   words += last < first ? fmt::format(" fell from {} to {}{}", plain_number(first), plain_number(last),
                                       in_brackets(change(first, last, true)))
                         : " stayed at " + plain_number(first);
+  if (is_of_nominal) return words + "; its result is drawing.toml." + origin_of_best(result);
   const double number = evaluations_until(evaluation_indices(search.course), found_at);
   return words + fmt::format("; the chosen waveform is number {}.", whole(number));
 }

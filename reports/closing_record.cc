@@ -288,7 +288,7 @@ ClosingRecord record_of(const RobustSearchResult& found, const OptimizeOptions& 
     s.devices->next_command = std::move(next_command);
   }
   if (found.interrupted) r.status = "interrupted";
-  s.course.value_name = "cost, on the nominal device";
+  s.course.value_name = "cost, on the nominal design";
   return r;
 }
 

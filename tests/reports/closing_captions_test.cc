@@ -209,6 +209,11 @@ TEST(Captions, OfASearchNameTheWinner) {
   result["search"]["evaluations"] = {{0, 2.0}, {7, 3.0}};
   EXPECT_TRUE(search_caption(read_closing(result), *read_closing(result).search)
                   .ends_with("In 300 evaluations the cost stayed at 2; the chosen waveform is number 1."));
+  result["search"]["value_name"] = "cost, on the nominal design";
+  EXPECT_EQ(
+      search_caption(read_closing(result), *read_closing(result).search),
+      "Cost of every waveform tried (dots) and of the best so far (line) in the search for the nominal design alone. In 300 "
+      "evaluations the cost stayed at 2; its result is drawing.toml.");
 }
 
 TEST(Goal, ComparesTheFiguresOfTheTarget) {

@@ -99,6 +99,18 @@ TEST(DevicesReport, SaysFirstWhatDevicesDo) {
     EXPECT_THAT(page, HasSubstr(part));
 }
 
+TEST(DevicesReport, SaysThatTheChartOfTheSearchShowsTheNominalDesign) {
+  ClosingRecord r = devices_result();
+  r.search->course.value_name = "cost, on the nominal design";
+  const auto caption = [&] { return internal::search_caption(r, *r.search); };
+  EXPECT_THAT(caption(), testing::EndsWith("; its result is drawing.toml. best.toml comes from the search over devices, which "
+                                           "this chart does not show."));
+  r.search->devices->measure = "drawing";
+  EXPECT_THAT(caption(), testing::EndsWith("best.toml was chosen among its waveforms, by their figures on the devices."));
+  r.search->devices->better_than_plain_step = false;
+  EXPECT_THAT(caption(), testing::EndsWith("; its result is drawing.toml. best.toml is the plain step."));
+}
+
 TEST(DevicesReport, SaysThatTheStepIsDelayedAndWhatMeasuringWins) {
   ClosingRecord r = devices_result();
   const auto text = [&] {
