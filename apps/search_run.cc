@@ -143,8 +143,8 @@ void SearchRun::tell(const Leading& leading) {
     print_note(
         fmt::format("Best waveforms so far, on {} simulated devices; the search continues. Columns: 95th (99th) percentile.",
                     leading.own.size()));
-    print_note(fmt::format("  {:16}{:>24}{:>24}{:>14}   {}", "waveform", "impact velocity", "rebound height", "settled after",
-                           "found after"));
+    print_note(fmt::format("  {:16}{:>24}{:>24}{:>14}   {}", "waveform", "largest impact velocity", "highest rebound",
+                           "settled after", "found after"));
     row("plain step", leading.of_step, "");
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;

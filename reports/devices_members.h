@@ -99,7 +99,7 @@ inline void members(internal::Archive& a, DevicesFindings::Courses& courses) {
 
 inline void members(internal::Archive& a, FrontPoint& point) {
   a(key_of(&Metrics::initial_contact_time), point.first_touch, "95th percentile of the first contact time");
-  a(key_of(&Metrics::largest_impact_velocity), point.impact_speed, "95th percentile of the impact velocity");
+  a(key_of(&Metrics::largest_impact_velocity), point.impact_speed, "95th percentile of the largest impact velocity");
   a("bounce_free", point.bounce_free, "share of bounce-free devices");
   a("candidate", point.candidate, "waveform family, and measure of risk that was minimised");
 }
@@ -108,7 +108,7 @@ inline void members(internal::Archive& a, CalibrationError& known) {
   a("error", known.error, "relative standard deviation of the error of the measured Vdp");
   a("bounce_free", known.bounce_free, "share of bounce-free devices");
   a(key_of(&Metrics::largest_impact_velocity), internal::OrInfinite{known.impact_speed},
-    "95th percentile of the impact velocity");
+    "95th percentile of the largest impact velocity");
 }
 
 inline void members(internal::Archive& a, TournamentEntry& contender) {

@@ -34,7 +34,7 @@ struct Column {
   bool with_99 = false;
   ShownIn shown = ShownIn::everywhere;
 };
-constexpr std::array columns{Column{key_of(&Metrics::largest_impact_velocity), "impact velocity", "impact", true},
+constexpr std::array columns{Column{key_of(&Metrics::largest_impact_velocity), "largest impact velocity", "largest impact", true},
                              Column{key_of(&Metrics::major_bounce_height), "highest rebound", "rebound", true},
                              Column{key_of(&Metrics::peak_contact_force), "peak force", "peak force"},
                              Column{key_of(&Metrics::steady_force_time), "steady force from", "steady from"},
@@ -122,25 +122,26 @@ TableCell headed(std::string_view on_terminal, std::string_view on_page) {
   return cell;
 }
 
-// Draws the waveforms among which the user can choose, and the plain step, as points: impact velocity against the time from
-// which the contact force is steady.
+// Draws the waveforms among which the user can choose, and the plain step, as points: largest impact velocity against the time
+// from which the contact force is steady.
 std::string choices_picture(const DevicesFindings& d) {
   if (d.choices.size() < 2) return {};
   CurveTables tables;
   CurveTable& table = tables["choices"];
-  Chart chart{.id = "choices",
-              .title = "Impact velocity against time",
-              .caption =
-                  "Both axes are 95th percentiles over the devices: the impact velocity against the time from which the contact "
-                  "force is steady.",
-              .x_column = "steady",
-              .x_label = "Steady force from, 95th percentile",
-              .x_unit = "s",
-              .y_label = "Impact velocity, 95th percentile",
-              .y_unit = "m/s",
-              .scale = AxisScale::logarithmic,
-              .height = 260,
-              .series = {{.table = "choices", .column = "speed", .label = "", .role = Role::best}}};
+  Chart chart{
+      .id = "choices",
+      .title = "Largest impact velocity against time",
+      .caption =
+          "Both axes are 95th percentiles over the devices: the largest impact velocity against the time from which the contact "
+          "force is steady.",
+      .x_column = "steady",
+      .x_label = "Steady force from, 95th percentile",
+      .x_unit = "s",
+      .y_label = "Largest impact velocity, 95th percentile",
+      .y_unit = "m/s",
+      .scale = AxisScale::logarithmic,
+      .height = 260,
+      .series = {{.table = "choices", .column = "speed", .label = "", .role = Role::best}}};
   double last = 0, softest = std::numeric_limits<double>::infinity(), hardest = 0;
   const auto point = [&](const std::string& name, Role role, bool is_choice) {
     const DevicesFindings::Row* row = d.row(name);
@@ -208,11 +209,11 @@ std::string error_curve(const DevicesFindings& d) {
               .series = {{.table = "by-error", .column = "share", .label = "", .role = Role::best}}};
   Chart speed = share;
   speed.id = "speed-by-error";
-  speed.title = "Impact velocity against the error of Vdp";
+  speed.title = "Largest impact velocity against the error of Vdp";
   speed.caption =
-      "95th percentile of the impact velocity if Vdp of each device is measured with this error, under the waveform with the "
+      "95th percentile of the largest impact velocity if Vdp of each device is measured with this error, under the waveform with the "
       "lowest value.";
-  speed.y_label = "Impact velocity";
+  speed.y_label = "Largest impact velocity";
   speed.y_unit = "m/s";
   speed.y_home.reset();
   speed.series.front().column = "speed";
@@ -226,7 +227,7 @@ std::string internal::nominal_prose(const DevicesFindings& d) {
   if (d.nominal_goal_met && std::isfinite(closed)) {
     const DevicesFindings::Row* row = d.row(for_nominal_design);
     const std::string on_devices =
-        row == nullptr ? "" : fmt::format(" (95th percentile of the impact velocity on the devices: {})", speed_of(*row));
+        row == nullptr ? "" : fmt::format(" (95th percentile of the largest impact velocity on the devices: {})", speed_of(*row));
     return fmt::format("drawing.toml, searched for the nominal design alone, closes it bounce-free at {}{}.",
                        quantity(closed, "s"), on_devices);
   }
@@ -348,7 +349,7 @@ std::string path_prose(const DevicesFindings& d) {
       drive, is_used ? "carries" : "alone can carry", percent(path.share), quantity(path.limit, "V"), quantity(path.reaches, "V"),
       is_used ? "" : ", but best.toml does not do so");
   if (is_used && path.share < 1)
-    words += " The electrode pulls in the others, at a higher impact velocity (see the 99th percentile).";
+    words += " The electrode pulls in the others, at a larger impact velocity (see the 99th percentile).";
   if (drive == "piezo") words += " The model has no creep and no hysteresis of the piezo.";
   return words;
 }
@@ -377,8 +378,9 @@ std::string measuring_prose(const DevicesFindings& d) {
   return lands_more
              ? fmt::format("With per-device calibration ({}), {} of the devices close bounce-free: calibrated.toml.", what,
                            percent(measured->bounce_free))
-             : fmt::format("With per-device calibration ({}), the 95th percentile of the impact velocity is {}: calibrated.toml.",
-                           what, speed_of(*measured));
+             : fmt::format(
+                   "With per-device calibration ({}), the 95th percentile of the largest impact velocity is {}: calibrated.toml.",
+                   what, speed_of(*measured));
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ void members(internal::Archive& a, MeasurementsRecord::Row& row) {
   if (!a.has(p.is_judged)) return;
   a("score_95", p.score, "95th percentile of the cost of `bounce`");
   a("bounce_free", p.bounce_free, "bounce-free devices");
-  a("largest_impact_velocity_95_m_s", p.impact_speed, "95th percentile of the impact velocity");
+  a("largest_impact_velocity_95_m_s", p.impact_speed, "95th percentile of the largest impact velocity");
   a("major_bounce_height_95_m", p.rebound_height, "95th percentile of the highest rebound");
 }
 

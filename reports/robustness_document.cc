@@ -350,7 +350,7 @@ std::pair<std::string, std::string> headline_of(const RobustnessRecord& found) {
   const DriveRecord &step = found.drives.front(), &own = found.drives.back();
   const auto words = [&](const DriveRecord& d) {
     return fmt::format(
-        "{} of {} {} bounce-free; the 95th percentile is {} for the impact velocity and {} for the highest rebound",
+        "{} of {} {} bounce-free; the 95th percentile is {} for the largest impact velocity and {} for the highest rebound",
         percent(d.bounce_free.value), internal::devices_text(found.devices), found.devices == 1 ? "closes" : "close",
         quantity(quantile_95(d, drawn_figures[0]).value, "m/s"), quantity(quantile_95(d, drawn_figures[1]).value, "m"));
   };

@@ -65,7 +65,7 @@ std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, c
     };
     const auto words = [&](const DriveRobustness& drive) {
       if (drive.closing.value < 0.95) return fmt::format("{} close", percent(drive.closing.value));
-      return fmt::format("95th percentile: rebound height {}, impact velocity {}",
+      return fmt::format("95th percentile: highest rebound {}, largest impact velocity {}",
                          at_95_percent(drive, key_of(&Metrics::major_bounce_height)),
                          at_95_percent(drive, key_of(&Metrics::largest_impact_velocity)));
     };

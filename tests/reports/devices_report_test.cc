@@ -93,7 +93,7 @@ TEST(DevicesReport, SaysFirstWhatDevicesDo) {
     EXPECT_THAT(text, HasSubstr(part));
   EXPECT_THAT(text, Not(HasSubstr("drawing.toml  "))) << "on the page";
   for (const char* part : {"nominal design: drawing.toml", "default: best.toml", "Vdp and piezo to 1 %",
-                           "Impact velocity against the error of Vdp", "89.0\u00a0nm above the height from which rebounds count",
+                           "Largest impact velocity against the error of Vdp", "89.0\u00a0nm above the height from which rebounds count",
                            "99 % of 200 devices closed, between release and collapse:", "holds: 97.0 % of the devices",
                            "The piezo carries 96.5 % of the devices to their contact"})
     EXPECT_THAT(page, HasSubstr(part));
@@ -121,7 +121,7 @@ TEST(DevicesReport, SaysThatTheStepIsDelayedAndWhatMeasuringWins) {
   EXPECT_THAT(text(), HasSubstr("The plain step of the electrode is delayed to 463\u00a0µs"));
   EXPECT_THAT(text(), HasSubstr("--hold-step fixed"));
   EXPECT_THAT(text(),
-              HasSubstr("(Vdp measured to 1 %), the 95th percentile of the impact velocity is 16.6\u00a0mm/s: calibrated.toml."));
+              HasSubstr("(Vdp measured to 1 %), the 95th percentile of the largest impact velocity is 16.6\u00a0mm/s: calibrated.toml."));
   r.search->devices->measured.clear();
   r.search->devices->next_command.clear();
   EXPECT_THAT(text(), HasSubstr("neither Vdp measured to 1 % nor a closing time measured to 50 ns on each device gives"));
@@ -209,7 +209,7 @@ TEST(DevicesReport, StandsFirstOnThePage) {
   const std::size_t table = page.find("id=\"devices\""), figures = page.find("id=\"figures\"");
   ASSERT_NE(table, std::string::npos);
   EXPECT_LT(table, figures);
-  EXPECT_THAT(page, HasSubstr("<dt>Impact velocity, 95th percentile</dt>"));
+  EXPECT_THAT(page, HasSubstr("<dt>Largest impact velocity, 95th percentile</dt>"));
   EXPECT_THAT(page, HasSubstr("<td class=\"own\">33.0 (36.3)\u00a0mm/s</td>"));
   EXPECT_THAT(page, HasSubstr("aria-label=\"Bounce-free devices against the error of Vdp"));
   EXPECT_THAT(page_html(closing_document(search_alone())), Not(HasSubstr("id=\"devices\"")));
