@@ -413,7 +413,10 @@ internal::Picture gap_and_drives(const ClosingRecord& result) {
 }
 
 std::string svg_gap_chart(const ClosingRecord& result) {
-  return svg_page(internal::headline(result).whole(), result.title, gap_and_drives(result));
+  // The headline of a search over devices is about the devices; the curves are not.
+  const std::string whose = result.devices() != nullptr ? "The curves are those of the nominal design." : "";
+  const std::string between = result.title.empty() || whose.empty() ? "" : ". ";
+  return svg_page(internal::headline(result).whole(), result.title + between + whose, gap_and_drives(result));
 }
 
 }  // namespace softland

@@ -392,9 +392,9 @@ Document closing_document(const ClosingRecord& result) {
   document.sections.push_back({.id = "sketch", .heading = "The switch at rest", .parts = {Drawing{[&result](const Picture&) {
                                                                                   return drawn_switch(result);
                                                                                 }}}});
-  document.sections.push_back({.id = "charts", .heading = "Closing transient", .parts = {Drawing{[&result](const Picture& drawn) {
-                                                                                 return closing_charts(result, drawn);
-                                                                               }}}});
+  document.sections.push_back({.id = "charts",
+                               .heading = devices != nullptr ? "Closing transient of the nominal design" : "Closing transient",
+                               .parts = {Drawing{[&result](const Picture& drawn) { return closing_charts(result, drawn); }}}});
   for (ReportSection& section : std::array{figures_section(result), checks_section(result), search_section(result)}) {
     if (devices != nullptr) section.shown = ShownIn::page;
     document.sections.push_back(std::move(section));

@@ -11,6 +11,7 @@
 
 #include "document/text.h"
 #include "reports/closing_captions.h"
+#include "reports/closing_charts.h"
 #include "reports/closing_document.h"
 #include "reports/closing_record.h"
 #include "reports/device_gaps.h"
@@ -92,10 +93,11 @@ TEST(DevicesReport, SaysFirstWhatDevicesDo) {
                            "∞", "0.0 / 25 / 100 %", "500\u00a0µs"})
     EXPECT_THAT(text, HasSubstr(part));
   EXPECT_THAT(text, Not(HasSubstr("drawing.toml  "))) << "on the page";
-  for (const char* part : {"nominal design: drawing.toml", "default: best.toml", "Vdp and piezo to 1 %",
-                           "Largest impact velocity against the error of Vdp", "89.0\u00a0nm above the height from which rebounds count",
-                           "99 % of 200 devices closed, between release and collapse:", "holds: 97.0 % of the devices",
-                           "The piezo carries 96.5 % of the devices to their contact"})
+  for (const char* part :
+       {"nominal design: drawing.toml", "default: best.toml", "Vdp and piezo to 1 %",
+        "Largest impact velocity against the error of Vdp", "89.0\u00a0nm above the height from which rebounds count",
+        "99 % of 200 devices closed, between release and collapse:", "holds: 97.0 % of the devices",
+        "The piezo carries 96.5 % of the devices to their contact"})
     EXPECT_THAT(page, HasSubstr(part));
 }
 
@@ -120,8 +122,9 @@ TEST(DevicesReport, SaysThatTheStepIsDelayedAndWhatMeasuringWins) {
   };
   EXPECT_THAT(text(), HasSubstr("The plain step of the electrode is delayed to 463\u00a0µs"));
   EXPECT_THAT(text(), HasSubstr("--hold-step fixed"));
-  EXPECT_THAT(text(),
-              HasSubstr("(Vdp measured to 1 %), the 95th percentile of the largest impact velocity is 16.6\u00a0mm/s: calibrated.toml."));
+  EXPECT_THAT(
+      text(),
+      HasSubstr("(Vdp measured to 1 %), the 95th percentile of the largest impact velocity is 16.6\u00a0mm/s: calibrated.toml."));
   r.search->devices->measured.clear();
   r.search->devices->next_command.clear();
   EXPECT_THAT(text(), HasSubstr("neither Vdp measured to 1 % nor a closing time measured to 50 ns on each device gives"));
@@ -165,6 +168,14 @@ TEST(DevicesReport, LeavesOutMeasuredDevicesWithoutAGain) {
   EXPECT_THAT(page, Not(HasSubstr("per-device calibration: Vdp to 1 %")));
   EXPECT_THAT(page, Not(HasSubstr("against the error of Vdp")));
   EXPECT_THAT(page, HasSubstr("Per-device calibration does not help"));
+}
+
+TEST(DevicesReport, SaysThatTheCurvesAreThoseOfTheNominalDesign) {
+  const std::string note = "The curves are those of the nominal design.", heading = "Closing transient of the nominal design";
+  EXPECT_THAT(svg_gap_chart(devices_result()), HasSubstr(note));
+  EXPECT_THAT(page_html(closing_document(devices_result())), HasSubstr(heading));
+  EXPECT_THAT(svg_gap_chart(search_alone()), Not(HasSubstr(note)));
+  EXPECT_THAT(page_html(closing_document(search_alone())), Not(HasSubstr(heading)));
 }
 
 TEST(DevicesReport, SaysHowManyLandWhereHalfOfThemDo) {
