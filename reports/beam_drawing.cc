@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "document/escape.h"
 #include "document/quantity.h"
 #include "document/svg.h"
 #include "model/beam.h"
@@ -15,6 +16,7 @@
 namespace softland {
 namespace {
 
+using internal::escaped;
 using internal::given_quantity;
 using Corners = std::vector<std::pair<double, double>>;
 
@@ -33,8 +35,9 @@ std::string filled(const char* colour, double opacity = 1) {
   return fmt::format("fill=\"{}\" fill-opacity=\"{}\" stroke=\"{}\" stroke-width=\"0.6\"", colour, opacity, ink);
 }
 std::string outlined(const char* colour) { return fmt::format("fill=\"none\" stroke=\"{}\" stroke-dasharray=\"5 3\"", colour); }
-std::string label(double x, double y, const std::string& text, const char* colour = pale) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"12\" fill=\"{}\">{}</text>\n", x, y, colour, text);
+std::string label(double x, double y, const std::string& text, const char* colour = pale, const char* anchor = "start") {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"12\" fill=\"{}\" text-anchor=\"{}\">{}</text>\n", x, y, colour,
+                     anchor, escaped(text));
 }
 
 constexpr double most_holes = 4000;  // largest number of holes of the beam that are drawn
@@ -66,20 +69,27 @@ class BeamSketch {
       out +=
           rectangle(x(layer.begin.on(s_.length)), middle - half, x(layer.end.on(s_.length)), middle + half, outlined(of_layer));
     }
+    if (d_.piezo) {
+      const double begin = d_.piezo->begin.on(s_.length), half = width_at(s_, begin) * across / 2;
+      out += rectangle(x(begin), middle - half, x(d_.piezo->end.on(s_.length)), middle + half, outlined(of_layer));
+      out += label(x(begin) + 4, middle + 4, "piezo", of_layer);
+    }
     const double edge = widest * across / 2 + 6;
+    out += anchors(middle - edge, middle + edge, middle + edge + 14);
     for (const Electrode& e : d_.electrodes) {
       for (const Stretch& pad : e.pads(s_.length)) {
         out += rectangle(x(pad.begin), middle - edge, x(pad.end), middle + edge, outlined(of_electrode));
         out += label(x(pad.begin) + 4, middle - edge - 3, e.name, of_electrode);
       }
     }
-    for (std::size_t c = 0; c < d_.contacts.size(); ++c) out += dots(c, across, middle);
+    for (std::size_t c = 0; c < d_.contacts.size(); ++c) out += dots(c, across, middle) + name_of_contact(c, middle + edge + 14);
     return {out, middle + edge + 24};
   }
 
   std::pair<std::string, double> from_the_side(double top) const {
     double highest = 0;
-    for (int k = 0; k <= places; ++k) highest = std::max(highest, height(s_.length * k / places, true));
+    for (int k = 0; k <= places; ++k)
+      highest = std::max(highest, height(s_.length * k / places, true) + (d_.piezo ? d_.piezo->thickness : 0));
     for (std::size_t c = 0; c < d_.contacts.size(); ++c) {
       if (d_.contacts[c].side == Side::far) highest = std::max(highest, stop_plane(c));
     }
@@ -110,6 +120,16 @@ class BeamSketch {
       out += polygon(corners, filled(of_layer, 0.8));
       lifted += layer.thickness;
     }
+    if (d_.piezo) {
+      Corners corners;
+      band(d_.piezo->begin.on(s_.length), d_.piezo->end.on(s_.length), corners, y, [&](double at) {
+        const double on = section_at(s_, at).thickness + lifted;
+        return std::pair{on, on + d_.piezo->thickness};
+      });
+      out += polygon(corners, filled(of_layer, 0.8));
+      const auto [left, upper] = *std::ranges::min_element(corners);
+      out += label(left + 4, upper - 4, "piezo", of_layer);
+    }
     for (const LayerPart& layer : part_of<Beam>(s_).layers) {
       if (layer.face != Side::near) continue;
       Corners corners;
@@ -128,6 +148,7 @@ class BeamSketch {
         deepest = std::max(deepest, metal);
       }
     }
+    out += anchors(y(height(0, true)), ground + 8, ground - 4);
     for (std::size_t c = 0; c < d_.contacts.size(); ++c) {
       if (d_.contacts[c].along_face) continue;  // the face of the dielectric is the contact, so no separate contact is drawn
       const double at = x(d_.contact_position(c)), half = 3;
@@ -136,6 +157,7 @@ class BeamSketch {
       else
         out += rectangle(at - half, y(height(d_.contact_position(c), false) - d_.contact_gap(c)), at + half, ground,
                          filled(of_contact));
+      out += name_of_contact(c, d_.contacts[c].side == Side::far ? y(stop_plane(c)) - 12 : ground + 20);
     }
     return {out, ground + deepest + 24};
   }
@@ -144,6 +166,24 @@ class BeamSketch {
   static constexpr int places = 100;
 
   [[nodiscard]] double x(double place) const { return place * scale_; }
+  /// Draws the anchors at the clamped ends of the beam between the heights `top` and `bottom`, with their name at the height
+  /// `words` [px].
+  [[nodiscard]] std::string anchors(double top, double bottom, double words) const {
+    constexpr double wide = 14;
+    std::string out = rectangle(-wide, top, 0, bottom, filled(of_stop)) + label(2, words, "anchor");
+    if (s_.has_far_clamp())
+      out += rectangle(x(s_.length), top, x(s_.length) + wide, bottom, filled(of_stop)) +
+             label(x(s_.length) - 2, words, "anchor", pale, "end");
+    return out;
+  }
+  [[nodiscard]] std::string name_of_contact(std::size_t c, double words) const {
+    const Contact& contact = d_.contacts[c];
+    if (contact.along_face) return {};
+    const double at = x(d_.contact_position(c));
+    const bool is_far = contact.side == Side::far;
+    return label(at, words, contact.name.empty() ? "contact" : contact.name, is_far ? pale : of_contact,
+                 at > x(s_.length) / 2 ? "end" : "start");
+  }
   /// Returns the height above the electrode of the plane of contact c, a stop on the far side (above the beam) [m].
   [[nodiscard]] double stop_plane(std::size_t c) const { return height(d_.contact_position(c), true) + d_.contact_gap(c); }
   /// Draws contacts as dots; equal contacts stand side by side across the beam. A contact along a face has no dots.

@@ -41,5 +41,18 @@ TEST(BeamDrawing, ShowsEveryPartFromAboveAndFromTheSide) {
   EXPECT_EQ(drawn(built, "nan"), 0);
 }
 
+TEST(BeamDrawing, ShowsAndNamesPiezoAnchorsAndContacts) {
+  Device d = test::gold_cantilever();
+  EXPECT_EQ(drawn(beam_drawing("", d), ">anchor<"), 2) << "from above and from the side";
+  EXPECT_EQ(drawn(beam_drawing("", d), ">contact<"), 2);
+  EXPECT_EQ(drawn(beam_drawing("", d), ">piezo<"), 0);
+  d.piezo = {.begin = 0, .end = 150_um, .thickness = 0.5_um, .youngs_modulus = 60_GPa, .density = 7500, .d31 = -100e-12};
+  d.contacts.front().name = "<tip>";
+  const std::string built = beam_drawing("", d);
+  EXPECT_EQ(drawn(built, ">piezo<"), 2);
+  EXPECT_EQ(drawn(built, layer), 3) << "a body from the side, and two names; an outline from above";
+  EXPECT_EQ(drawn(built, ">&lt;tip&gt;<"), 2);
+}
+
 }  // namespace
 }  // namespace softland
