@@ -88,9 +88,9 @@ struct Picture {
                                     const std::string& y_unit, double until, int height);
 
 /// Draws the chart as SVG elements on a canvas `width` wide, its top left corner at (0, `top`); text and lines carry their own
-/// colours.
+/// colours. A title that is longer than the canvas is wide has several lines.
 [[nodiscard]] std::string chart_svg(const CurveTables& tables, const Chart& chart, double width, double top);
-/// Returns the height of the elements of chart_svg() [px], title and axes included.
-[[nodiscard]] double chart_svg_height(const Chart& chart);
+/// Returns the height of the elements of chart_svg() on a canvas `width` wide [px], title and axes included.
+[[nodiscard]] double chart_svg_height(const Chart& chart, double width);
 
 }  // namespace softland::internal

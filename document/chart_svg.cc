@@ -4,11 +4,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "document/axis.h"
 #include "document/chart.h"
 #include "document/escape.h"
 #include "document/quantity.h"
+#include "document/text.h"
 
 namespace softland::internal {
 namespace {
@@ -19,8 +23,9 @@ constexpr const char* grid = "#e4e7ea";
 
 constexpr double left = 78;
 constexpr double right = 18;
-constexpr double above = 46;  // height of title and legend [px]
-constexpr double below = 46;  // height of tick labels and axis label [px]
+constexpr double above = 46;       // height of title and legend [px]
+constexpr double below = 46;       // height of tick labels and axis label [px]
+constexpr double title_line = 18;  // distance between lines of a title [px]
 
 struct Stroke {
   const char* colour;
@@ -145,6 +150,15 @@ constexpr const char* halo = " paint-order=\"stroke\" stroke=\"#fff\" stroke-wid
 /// Returns the title of an axis with its unit: "Time (µs)", "Gap (nm)" or "cost".
 std::string axis_title(const std::string& name, const std::string& unit, const Prefix& prefix) {
   return unit.empty() ? name : fmt::format("{} ({}{})", name, prefix.symbol, unit);
+}
+
+/// Breaks the title of a chart into lines that fit on a canvas `width` wide [px].
+std::vector<std::string> title_lines(const Chart& chart, double width) {
+  constexpr double letter = 9;  // mean width of a letter of a title, in the widest of the usual fonts [px]
+  std::istringstream words(wrapped(chart.title, static_cast<std::size_t>(width / letter)));
+  std::vector<std::string> lines;
+  for (std::string one; std::getline(words, one);) lines.push_back(one);
+  return lines;
 }
 
 /// Both axes of a chart, in pixels.
@@ -309,11 +323,19 @@ std::string chart_mark(const Mark& mark, const Axes& axes) {
 
 }  // namespace
 
-double chart_svg_height(const Chart& chart) { return above + chart.height + below; }
+double chart_svg_height(const Chart& chart, double width) {
+  const std::size_t lines = std::max<std::size_t>(1, title_lines(chart, width).size());
+  return above + chart.height + below + title_line * static_cast<double>(lines - 1);
+}
 
 std::string chart_svg(const CurveTables& tables, const Chart& chart, double width, double top) {
+  std::string out;
+  const std::vector<std::string> title = title_lines(chart, width);
+  for (std::size_t i = 0; i < title.size(); ++i) {
+    if (i > 0) top += title_line;
+    out += label(0, top + 15, "start", ink, 15, title[i], " font-weight=\"600\"");
+  }
   const Axes axes = axes_of(tables, chart, width, top);
-  std::string out = label(0, top + 15, "start", ink, 15, chart.title, " font-weight=\"600\"");
   out += chart_legend(chart, top) + chart_scales(chart, axes) + zero_line(chart, axes);
   out += fmt::format("<clipPath id=\"clip-{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\"/></clipPath>\n",
                      chart.id, left, axes.y.pixel_high, axes.x.pixel_high - axes.x.pixel_low, chart.height);

@@ -40,7 +40,8 @@ namespace {
 
 std::string picture_of(const CurveTables& tables, const Chart& chart, const char* style, double width) {
   return fmt::format("<svg class=\"{}\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", style, width,
-                     chart_svg_height(chart), escaped(chart.title + ". " + chart.caption), chart_svg(tables, chart, width, 0));
+                     chart_svg_height(chart, width), escaped(chart.title + ". " + chart.caption),
+                     chart_svg(tables, chart, width, 0));
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ std::string svg_page(const std::string& headline, const std::string& words, cons
         row_height = 0;
       }
       const std::string chart = chart_svg(drawn.tables, drawn.charts[i], cell, top);
-      row_height = std::max(row_height, chart_svg_height(drawn.charts[i]) + between);
+      row_height = std::max(row_height, chart_svg_height(drawn.charts[i], cell) + between);
       body += column == 0 ? chart
                           : fmt::format("<g transform=\"translate({:.1f} 0)\">\n{}</g>\n",
                                         static_cast<double>(column) * (cell + between), chart);

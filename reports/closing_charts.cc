@@ -159,9 +159,10 @@ std::optional<std::array<double, 2>> plane_band(const ClosingRecord& result, con
       lowest = std::fmin(lowest, gaps[row]);
   }
   if (lowest == 0) return std::nullopt;
-  constexpr double margin = 1.15;
+  constexpr double margin = 1.15, words = 0.1;  // share of the range above the plane that the label of the plane needs below it
   const double height = drawable(figure_of_run(result.best, &Metrics::major_bounce_height));
-  return std::array{margin * lowest, margin * std::fmax(-2 * lowest, height)};
+  const double most = margin * std::fmax(-2 * lowest, height);
+  return std::array{std::fmin(margin * lowest, -words * most), most};
 }
 
 /// Adds the curves and the drive waveforms of each run as tables to the description of the charts. Returns the names of the

@@ -67,7 +67,7 @@ CurveTable medians(const std::vector<double>& x, const std::vector<double>& y) {
   return line;
 }
 
-std::string scatter(const VariedQuantity& quantity, const Figure& figure, const std::vector<double>& values) {
+std::string scatter(const VariedQuantity& quantity, const Figure& figure, const std::vector<double>& values, int number) {
   std::vector<double> finite;
   std::ranges::copy_if(values, std::back_inserter(finite), [](double v) { return std::isfinite(v); });
   if (finite.size() < fewest_of_group) return {};
@@ -81,7 +81,7 @@ std::string scatter(const VariedQuantity& quantity, const Figure& figure, const 
   }
   if (dots["x"].empty()) return {};
   const auto [low, high] = std::ranges::minmax(quantity.values);
-  Chart chart{.id = "scatter",
+  Chart chart{.id = fmt::format("scatter-{}", number),
               .title = fmt::format("{} by {}", figure.name, quantity.name),
               .caption = "",
               .x_column = "x",
@@ -104,11 +104,12 @@ std::string scatter_html(const RobustnessReport& report) {
   const DriveRobustness& drive = report.found.drives.back();
   const std::vector<VariedQuantity> quantities = quantities_of(report);
   std::string pictures;
+  int number = 0;
   for (const std::string_view key : explained_figures) {
     const Figure& figure = figure_of(key);
     std::vector<double> values;
     for (const DeviceOutcome& o : drive.outcomes) values.push_back(o.of(figure));
-    for (const VariedQuantity& quantity : quantities) pictures += scatter(quantity, figure, values);
+    for (const VariedQuantity& quantity : quantities) pictures += scatter(quantity, figure, values, number++);
   }
   if (pictures.empty()) return {};
   return fmt::format(

@@ -50,6 +50,11 @@ TEST(Charts, EnlargeTheLandingAndTheHighestRebound) {
   EXPECT_EQ(drawn.charts[0].x_home[1], 600e-6);
   EXPECT_GT(drawn.charts[1].x_home[1], 60e-6);
   EXPECT_LT(drawn.charts[1].x_home[1], 150e-6);
+  json high = softland::test::sample_optimize_result(6000);
+  high["best"]["metrics"]["major_bounce_height_m"] = 1e-6;
+  const auto range = picture(read_closing(high)).charts.at(1).y_home.value();
+  EXPECT_GT(range[1], 1e-6);
+  EXPECT_LE(range[0], -0.1 * range[1]) << "the label of the contact plane needs room";
 }
 
 TEST(Charts, EnlargeNoLandingWhereThereIsNone) {
@@ -212,6 +217,12 @@ TEST(ChartSvg, SpacesDecadesEvenlyOnALogarithmicAxis) {
   for (const char* tick : {">1<", ">10<", ">100<"}) EXPECT_NE(svg.find(tick), std::string::npos) << tick;
   chart.x_home = {0.9, 6};
   EXPECT_NE(chart_svg({}, chart, 500, 0).find(">5<"), std::string::npos) << "less than a decade has its parts as ticks";
+  const double plain = chart_svg_height(chart, 440);
+  chart.title = "Largest impact velocity by structure.youngs_modulus";  // 8.8 px a letter: wider than a small picture
+  EXPECT_NE(chart_svg({}, chart, 440, 0).find(">Largest impact velocity by</text>"), std::string::npos);
+  EXPECT_NE(chart_svg({}, chart, 440, 0).find(">structure.youngs_modulus</text>"), std::string::npos);
+  EXPECT_GT(chart_svg_height(chart, 440), plain);
+  EXPECT_EQ(chart_svg_height(chart, 960), plain);
 }
 
 }  // namespace
