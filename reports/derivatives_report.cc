@@ -119,7 +119,7 @@ ReportSection derivatives_section(const Derived& derivatives, const RobustnessRe
   ReportTable table{.head = {derivatives.grazes ? "To first order (grazing)" : "To first order", "Nominal"}, .rows = {}};
   table.head.front().html = "Figure";
   for (const auto& [name, variable] : derivatives.variables) table.head.emplace_back(name);
-  table.head.insert(table.head.end(), {"Standard deviation", "that of the devices"});
+  table.head.insert(table.head.end(), {"Standard deviation", "Standard deviation of the devices"});
   for (const Derived::Of& figure : derivatives.figures) {
     const Figure& of = figure_of(figure.key);
     TableRow& row = table.rows.emplace_back(TableRow{of.name, quantity(figure.nominal, of.unit)});

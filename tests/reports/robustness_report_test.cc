@@ -209,6 +209,7 @@ TEST(RobustnessReport, SaysWhatItsDerivativesAreWorth_optimized) {
   const std::string text = terminal_text(robustness_document(report)), page = page_html(robustness_document(report));
   const nlohmann::json j = json_of(record_of(report))["derivatives"];
   EXPECT_THAT(text, HasSubstr("To first order (grazing)"));
+  EXPECT_THAT(text, HasSubstr("Standard deviation of the devices"));
   EXPECT_THAT(page, HasSubstr("has 3.0 % of the impact velocity"));
   EXPECT_THAT(page, HasSubstr("ill-conditioned: so &amp; so"));
   EXPECT_THAT(page, HasSubstr("structure.thickness is left out: no device beside it."));
