@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "base/require.h"
@@ -56,8 +57,8 @@ internal::CurveTable branch_of(std::vector<SweepPoint> points, bool is_up) {
   return columns;
 }
 
-internal::Chart sweep_chart(const std::string& column, const std::string& title, const std::string& unit, double low,
-                            double high) {
+internal::Chart sweep_chart(const std::string& column, const std::string& title, const std::string& unit, double low, double high,
+                            bool goes_down) {
   internal::Chart chart{.id = column,
                         .title = title,
                         .x_column = "voltage",
@@ -67,9 +68,28 @@ internal::Chart sweep_chart(const std::string& column, const std::string& title,
                         .y_unit = unit,
                         .x_home = {low, high},
                         .x_whole = {low, high}};
-  chart.series = {{.table = "up", .column = column, .label = "up"},
-                  {.table = "down", .column = column, .label = "down", .role = internal::Role::baseline}};
+  chart.series = {{.table = "up", .column = column, .label = "up"}};
+  if (goes_down) chart.series.push_back({.table = "down", .column = column, .label = "down", .role = internal::Role::baseline});
   return chart;
+}
+
+// Returns the voltage at which the beam collapses onto the electrode in a sweep, after which no law describes how the beam
+// comes off; NaN without a collapse.
+double collapse_of(const PullInsRecord& record) {
+  const auto first = std::ranges::find_if(record.sweep, [](const SweepPoint& p) { return p.state == SweepState::none; });
+  if (first == record.sweep.end()) return Metrics::unset;
+  if (first == record.sweep.begin()) return first->voltage;
+  const SweepPoint& before = *std::prev(first);
+  const PullInRecord& known = record.electrodes.at(record.swept).volts;
+  const double exact = before.state == SweepState::closed ? known.pulled_through : known.static_pull_in;
+  return before.voltage < exact && exact <= first->voltage ? exact : first->voltage;
+}
+
+std::string collapse_prose(const PullInsRecord& record) {
+  const double collapse = collapse_of(record);
+  return std::isfinite(collapse) ? fmt::format("In the sweep the beam collapses onto electrode {} at {} and stays there",
+                                               record.swept, volts(collapse))
+                                 : std::string();
 }
 
 // Describes the kind of static pull-in (how the stable equilibrium ends); empty without pull-in.
@@ -283,6 +303,7 @@ std::string text_of(const PullInsRecord& record) {
   }
   const bool is_known = std::ranges::find(record.left_out, stable_path_left_out) == record.left_out.end();
   if (has_contact && is_known) text += wrapped("Stable path: " + words_of(record.stable_path) + ".") + "\n";
+  if (const std::string words = collapse_prose(record); !words.empty()) text += wrapped(words + ".") + "\n";
   return text;
 }
 
@@ -298,20 +319,22 @@ std::string sweep_svg(const PullInsRecord& record) {
   const std::vector<SweepPoint>& points = record.sweep;
   const ElectrodeRecord& electrode = record.electrodes.at(record.swept);
   const auto& [pull_in, release] = std::pair(electrode.volts.static_pull_in, electrode.volts.release);
-  std::string of = fmt::format("Electrode {}, swept up and down", record.swept);
+  const bool goes_down = std::ranges::any_of(points, [](const SweepPoint& p) { return !p.is_up && p.state != SweepState::none; });
+  std::string of = fmt::format("Electrode {}, swept up{}", record.swept, goes_down ? " and down" : "");
   if (const std::string others = bias_prose(electrode); !others.empty()) of += ", with " + others;
   const auto [least, most] = std::minmax_element(points.begin(), points.end(),
                                                  [](const SweepPoint& a, const SweepPoint& b) { return a.voltage < b.voltage; });
   internal::Picture picture{.tables = {{"up", branch_of(points, true)}, {"down", branch_of(points, false)}}, .charts = {}};
   for (const auto& [column, title, unit] : {std::array{"deflection", "Deflection of the contact point", "m"},
                                             std::array{"capacitance", "Capacitance of the electrode", "F"}})
-    picture.charts.push_back(sweep_chart(column, title, unit, least->voltage, most->voltage));
+    picture.charts.push_back(sweep_chart(column, title, unit, least->voltage, most->voltage, goes_down));
   if (pull_in <= most->voltage)
     picture.charts.front().marks.push_back({pull_in, electrode.volts.deflection, internal::Role::best, "pull-in"});
   std::string words = std::isfinite(pull_in) ? fmt::format("Pull-in at {}, deflected by {}", quantity(pull_in, "V", 4),
                                                            quantity(electrode.volts.deflection, "m", 4))
                                              : std::string("No pull-in voltage");
-  if (std::isfinite(release)) words += fmt::format("; release at {}", quantity(release, "V", 4));
+  if (std::isfinite(release) && goes_down) words += fmt::format("; release at {}", quantity(release, "V", 4));
+  if (const std::string collapse = collapse_prose(record); !collapse.empty()) words += ". " + collapse;
   return svg_page(of, words + ".", picture, 1);
 }
 

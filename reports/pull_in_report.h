@@ -93,7 +93,7 @@ void members(internal::Archive& a, PullInsRecord& record);
 /// electrode are unknown, and empty.
 [[nodiscard]] std::string sweep_csv(const std::vector<SweepPoint>& points);
 /// Draws deflection and capacitance against the voltage of a rising and falling sweep. The pull-in voltage is marked if it is
-/// within the sweep.
+/// within the sweep. A beam that collapses onto the electrode has no falling half.
 [[nodiscard]] std::string sweep_svg(const PullInsRecord& record);
 
 }  // namespace softland
