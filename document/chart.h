@@ -75,6 +75,7 @@ struct Chart {
   /// true: each element of `series` is drawn as a horizontal bar along x, solid where the value is 1, pale where it is between
   /// 0 and 1, and empty where it is 0. The bars are below each other.
   bool is_of_bars = false;
+  bool is_of_steps = false;  ///< true: the curves have no dots on a logarithmic x axis; their points are corners of steps
 };
 inline constexpr int bar_height = 24;  ///< height of one bar [px]
 

@@ -115,6 +115,7 @@ json chart_json(const Picture& picture, std::size_t rows) {
                         {"least", resolution(chart.y_unit)},
                         {"scale", scale_name(chart.scale)}}},
                       {"bars", chart.is_of_bars},
+                      {"steps", chart.is_of_steps},
                       {"zero", chart.zero_line},
                       {"zeroLabel", chart.zero_label},
                       {"zeroLabelLeft", chart.zero_label_left},

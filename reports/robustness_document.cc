@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -108,8 +109,25 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
   return chart;
 }
 
+// Returns the least value on the logarithmic axis of a histogram of the sets `values`: the smallest positive value of them, or
+// a ten-thousandth of the largest. Returns 0 for a linear axis, if the medians of the sets differ by less than a factor of 10.
+double least_of_wide(const std::vector<std::vector<double>>& values) {
+  double softest = std::numeric_limits<double>::infinity(), hardest = 0, least = softest, most = 0;
+  for (const std::vector<double>& set : values) {
+    if (set.empty()) continue;
+    const double median = sample_quantile(set, 0.5);
+    softest = std::min(softest, median), hardest = std::max(hardest, median);
+    for (const double value : set) {
+      if (value > 0) least = std::min(least, value), most = std::max(most, value);
+    }
+  }
+  constexpr double wide = 10, range = 1e4;
+  return hardest > wide * softest ? std::max(least, most / range) : 0;
+}
+
 // Draws a histogram of a figure of merit over the devices, with the same bins for all sets of waveforms, over the range of the
-// cumulative curves. It shows what these hide: two peaks if some devices close in another way than the others.
+// cumulative curves. It shows what these hide: two peaks if some devices close in another way than the others. The bins are
+// narrow enough for each of the sets. They are equal on a logarithmic axis if the sets differ much.
 internal::Chart histogram_chart(const RobustnessReport& report, std::string_view key, const internal::Chart& cumulative,
                                 internal::CurveTables& tables) {
   const Figure& f = figure_of(key);
@@ -122,26 +140,41 @@ internal::Chart histogram_chart(const RobustnessReport& report, std::string_view
   chart.x_whole = chart.x_home;
   chart.series.clear();
   std::vector<std::vector<double>> values(drives.size());
-  std::vector<double> all;
   for (std::size_t i = 0; i < drives.size(); ++i) {
     for (const DeviceOutcome& o : drives[i].outcomes) {
       if (const double value = o.of(f); value <= chart.x_home[1]) values[i].push_back(value);
     }
-    all.insert(all.end(), values[i].begin(), values[i].end());
   }
-  if (all.empty()) return chart;
+  const double least = least_of_wide(values);
+  bool has_smaller = false;
+  double low = std::numeric_limits<double>::infinity(), high = -low, width = low;
   constexpr std::size_t most_bins = 80;
-  const Histogram bins = histogram(all, most_bins);
-  const double width = (bins.high - bins.low) / static_cast<double>(bins.counts.size());
-  if (!(width > 0)) return chart;
+  for (std::vector<double>& set : values) {
+    for (double& value : set) {
+      has_smaller = has_smaller || value < least;
+      if (least > 0) value = std::log10(std::max(value, least));
+      low = std::min(low, value), high = std::max(high, value);
+    }
+    if (set.empty()) continue;
+    const Histogram own = histogram(set, most_bins);
+    if (own.high > own.low) width = std::min(width, (own.high - own.low) / static_cast<double>(own.counts.size()));
+  }
+  if (!(high > low)) return chart;
+  const double wanted = std::clamp(std::ceil((high - low) / width), 1.0, static_cast<double>(most_bins));
+  width = (high - low) / wanted;
+  if (least > 0) {
+    chart.x_scale = internal::AxisScale::logarithmic;
+    chart.is_of_steps = true;
+    chart.x_home[0] = chart.x_whole[0] = least;
+  }
   for (std::size_t i = 0; i < drives.size(); ++i) {
-    std::vector<std::size_t> counts(bins.counts.size(), 0);
-    for (const double value : values[i])
-      ++counts[std::min(counts.size() - 1, static_cast<std::size_t>((value - bins.low) / width))];
+    std::vector<std::size_t> counts(static_cast<std::size_t>(wanted), 0);
+    for (const double value : values[i]) ++counts[std::min(counts.size() - 1, static_cast<std::size_t>((value - low) / width))];
     const std::string name = fmt::format("{}-{}", chart.id, i);
     internal::CurveTable& table = tables[name];
     const auto point = [&](std::size_t edge, double share) {
-      table["x"].push_back(bins.low + static_cast<double>(edge) * width);
+      const double at = low + static_cast<double>(edge) * width;
+      table["x"].push_back(least > 0 ? std::pow(10, at) : at);
       table["y"].push_back(share);
     };
     point(0, 0);
@@ -154,7 +187,10 @@ internal::Chart histogram_chart(const RobustnessReport& report, std::string_view
     chart.series.push_back(
         {.table = name, .column = "y", .label = shown_drive(drives[i].name), .role = role_of(i, drives.size())});
   }
-  chart.caption = fmt::format("Share of the devices in each interval of {}.", quantity(width, f.unit));
+  chart.caption =
+      least > 0 ? fmt::format("Share of the devices in each interval, which ends {} above its beginning.{}",
+                              percent(std::pow(10, width) - 1), has_smaller ? " The first also has all smaller values." : "")
+                : fmt::format("Share of the devices in each interval of {}.", quantity(width, f.unit));
   return chart;
 }
 

@@ -217,6 +217,8 @@
     ctx.restore();
   };
 
+  const isJoined = ({x, steps}) => x.scale === "linear" || steps;  // else a curve has a dot at every point
+
   const options = (chart, width, start) => {
     const {x, y} = chart;
     const narrow = width < 560;
@@ -229,7 +231,7 @@
       ...more,
     });
     const distributions = {linear: {distr: 1}, log: {distr: 3, log: 10}};
-    const joined = x.scale === "linear";
+    const joined = isJoined(chart);
     const yPrefix = (u) => (!y.unit ? [1, ""] : prefix(largest(u.scales.y) / 1.1));
     const ticks = (factor) => (value) => (value === null ? null : tickText(value / factor));
     const padded = (u, min, max) => {
@@ -285,7 +287,7 @@
           points: role === "evaluations" ? {show: true, size: narrow ? 2.5 : 3.5, width: 0, fill: colour(role), space: 0}
             : {show: !joined, size: 5, width: 0, fill: colour(role), space: 0},
           ...(role === "evaluations" || chart.bars ? {paths: () => null} : {}),
-          value: (u, value) => (chart.bars ? states[value] || "" : x.scale === "log" && value > 0 ? value.toExponential(1) : quantity(value, y.unit, y.least)),
+          value: (u, value) => (chart.bars ? states[value] || "" : !joined && value > 0 ? value.toExponential(1) : quantity(value, y.unit, y.least)),
         })),
       ],
       hooks: {
@@ -317,7 +319,7 @@
   }
   for (const group of groups.values()) group.aligned = aligned(group.curves, group.extra);
   const dataOf = (chart) => {
-    if (!chart.group) return aligned(chart.series.map(curve(chart)), [], chart.x.scale === "log");
+    if (!chart.group) return aligned(chart.series.map(curve(chart)), [], !isJoined(chart));
     const {aligned: all} = groups.get(chart.group);
     const first = charts.filter(({group}) => group === chart.group);
     const before = first.slice(0, first.indexOf(chart)).reduce((sum, {series}) => sum + series.length, 0);

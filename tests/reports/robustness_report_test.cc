@@ -245,8 +245,9 @@ std::vector<double> bins_of(const std::string& page, const std::string& table) {
   const std::size_t begin = page.find(mark) + mark.size();
   const nlohmann::json y = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin))["tables"][table]["y"];
   double sum = 0;
-  std::vector<double> knots;
-  for (const auto& step : y["steps"]) knots.push_back((sum += step.get<double>()) * y["unit"].get<double>());
+  std::vector<double> knots = y.value("values", std::vector<double>());  // a logarithmic axis has plain values
+  for (const auto& step : y.value("steps", nlohmann::json::array()))
+    knots.push_back((sum += step.get<double>()) * y["unit"].get<double>());
   std::vector<double> bins;
   for (std::size_t k = 1; k + 1 < knots.size(); k += 2) {
     EXPECT_EQ(knots[k], knots[k + 1]);
@@ -281,6 +282,23 @@ TEST(RobustnessReport, HasHistogramsOfAllDevicesInView_optimized) {
     bins = heights.size();
   }
   for (const char* id : {"count-v-max", "count-t-i"}) EXPECT_THAT(page, HasSubstr(fmt::format("data-chart=\"{}\"", id)));
+}
+
+TEST(RobustnessReport, DrawsHistogramsOfVeryDifferentSetsOnALogarithmicAxis_optimized) {
+  Study soft = study();
+  for (DeviceOutcome& o : soft.found.drives.back().outcomes) o.metrics.largest_impact_velocity *= 0.01;
+  soft.found.drives.back().outcomes.front().metrics.largest_impact_velocity = 0;  // has no logarithm
+  const internal::Picture drawn = robustness_document(soft.report()).draw();
+  const auto chart = std::ranges::find(drawn.charts, "count-v-max", &internal::Chart::id);
+  ASSERT_NE(chart, drawn.charts.end());
+  EXPECT_EQ(chart->x_scale, internal::AxisScale::logarithmic);
+  EXPECT_THAT(chart->caption, HasSubstr("The first also has all smaller values."));
+  for (const char* set : {"count-v-max-0", "count-v-max-1"}) {
+    const std::vector<double>&edges = drawn.tables.at(set).at("x"), &shares = drawn.tables.at(set).at("y");
+    EXPECT_GT(std::ranges::count_if(shares, [](double share) { return share > 0; }), 2 * 3) << set << " has several bars";
+    EXPECT_NEAR(edges.front(), chart->x_home[0], 1e-9 * edges.front());
+    EXPECT_NEAR(edges[4] / edges[3], edges[2] / edges[1], 1e-9) << "bins are equal on the axis";
+  }
 }
 
 TEST(RobustnessReport, ShowsThePlainStepAloneAndDevicesThatDoNotClose_optimized) {
