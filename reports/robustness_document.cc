@@ -322,6 +322,8 @@ std::string index_text(const SobolIndex& index) {
 
 ReportSection sensitivity_section(const RobustnessRecord& record) {
   ReportSection section{.id = "sensitivity", .heading = "Sources of the variation", .parts = {}};
+  if (!record.why_no_sensitivity.empty())
+    section.parts.emplace_back(Paragraph{fmt::format("There are no Sobol' indices: {}.", record.why_no_sensitivity)});
   if (record.sensitivity.empty()) return section;
   ReportTable table{.head = {"Share of the variance"}, .rows = {}};
   for (const RobustnessRecord::Sensitive& f : record.sensitivity) {

@@ -369,11 +369,16 @@ void members(internal::Archive& a, RobustnessRecord& r) {
 
 void add_details(RobustnessReport& report, bool other_ways_too, const Progress& progress) {
   if (report.found.interrupted || report.found.devices == 0) return;
-  constexpr std::uint64_t devices_per_row = 4, most_rows = 1024;
+  // The confidence intervals of the indices from fewer rows span most of 0 to 100 %.
+  constexpr std::uint64_t devices_per_row = 4, fewest_rows = 32, most_rows = 1024;
   const DriveRobustness& last = report.found.drives.back();
-  report.sensitivity =
-      sensitivity(report.nominal, last, std::clamp<std::uint64_t>(report.options.samples / devices_per_row, 8, most_rows),
-                  report.options, progress);
+  const std::uint64_t rows = std::min<std::uint64_t>(report.options.samples / devices_per_row, most_rows);
+  if (rows < fewest_rows) {
+    report.sensitivity.why_none = fmt::format(
+        "with fewer than {} devices their confidence intervals are too wide to say anything", devices_per_row * fewest_rows);
+  } else {
+    report.sensitivity = sensitivity(report.nominal, last, rows, report.options, progress);
+  }
   report.derivatives = derivatives(report.nominal, internal::exactly_measured(report.nominal, last), {}, progress);
   report.windows = hold_windows(report.nominal, report.options, progress);
   if (report.nominal.model.has_contact()) {

@@ -301,6 +301,16 @@ TEST(RobustnessReport, DrawsHistogramsOfVeryDifferentSetsOnALogarithmicAxis_opti
   }
 }
 
+TEST(RobustnessReport, LeavesOutSobolIndicesOfFewDevices_optimized) {
+  RobustnessReport report = study().report();
+  report.sensitivity = {};
+  add_details(report, false, {});
+  const std::string why = "with fewer than 128 devices";
+  EXPECT_THAT(terminal_text(robustness_document(report)), HasSubstr("There are no Sobol' indices: " + why));
+  EXPECT_THAT(terminal_text(robustness_document(report)), Not(HasSubstr("Share of the variance")));
+  EXPECT_THAT(json_of(record_of(report))["sensitivity"]["why_none"].get<std::string>(), HasSubstr(why));
+}
+
 TEST(RobustnessReport, ShowsThePlainStepAloneAndDevicesThatDoNotClose_optimized) {
   Study bare{.nominal = study().nominal, .options = {.samples = 8}, .found = study().found};
   bare.found.drives.resize(1);
