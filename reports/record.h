@@ -1,6 +1,6 @@
 // One list of members serves to write and to read a record as JSON, and to describe it in the manual. `members(archive, record)`,
-// a function beside the type of the record, names every member once, with its meaning, as in Drake's Serialize. The archive
-// writes, reads or lists these members; only a list uses the meaning.
+// a function beside the type of the record, names every member once, with its meaning (as in Drake's Serialize). The archive
+// writes, reads or lists these members. Only a list uses the meaning.
 //
 // A non-finite number is null in JSON. An archive that reads takes the members that are present. A number that is missing or null
 // becomes NaN. Any other member that is missing or of another type keeps its value in the record.

@@ -31,7 +31,7 @@ namespace softland {
 }
 
 /// Returns the squeeze number 12 mu_eff a^2 rate / (p h^2) of a gas film: width a [m], ambient pressure p, gap h [m]. `rate` is
-/// the relative rate of change of the gap [1/s]. mu_eff is the effective viscosity of the rarefied gas (veijola.h): a gas whose
+/// the relative rate of change of the gap [1/s]. mu_eff is the effective viscosity of the rarefied gas (veijola.h). A gas whose
 /// mean free path is long against the gap flows out before it is compressed.
 [[nodiscard]] double squeeze_number(const FilmState& gas, double width, double gap, double rate);
 
