@@ -131,7 +131,7 @@ TEST_F(Explore, OfOtherStudiesHasTheNumbersOfTheirRecords_optimized) {
             std::string::npos);
   EXPECT_NE(refused({"--study", "limit", "--samples", "3"}).find("--samples 3: study limit has no option 'samples'"),
             std::string::npos);
-  EXPECT_NE(refused({"--study", "limit", "--option", "impact-velocity=0"}).find("must be a velocity above 0 m/s"),
+  EXPECT_NE(refused({"--study", "limit", "--option", "impact-velocity=0 m/s"}).find("must be a velocity above 0 m/s"),
             std::string::npos);
   EXPECT_NE(refused({"--option", "certify"}).find("--option certify: must be NAME=VALUE"), std::string::npos);
 }
