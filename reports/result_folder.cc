@@ -127,7 +127,12 @@ fs::path ResultFolder::place(const std::string& name) {
 
 void ResultFolder::write(const std::string& name, std::string_view content) {
   make_stage();
-  write_whole(stage_ / name, content);
+  try {
+    write_whole(stage_ / name, content);
+  } catch (const InvalidInput&) {
+    check_lock();  // the folder may have vanished while the file was written
+    throw;
+  }
   if (!is_of(written_, name)) written_.push_back(name);
 }
 
