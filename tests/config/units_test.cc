@@ -209,7 +209,7 @@ TEST(Unit, OfWrongCaseIsAnsweredWithTheRightOne) {
   EXPECT_EQ(refused("1 torr"), "unknown unit 'torr' (did you mean 'Torr'?)");
   EXPECT_EQ(refused("1 KHz"), "unknown unit 'KHz' (did you mean 'kHz'?)");
   EXPECT_EQ(refused("1 Mv"), "unknown unit 'Mv' (did you mean 'MV'?)");
-  EXPECT_EQ(refused("1 pa"), "unknown unit 'pa' (did you mean 'Pa' or 'pA'?)");
+  EXPECT_EQ(refused("1 pa"), "unknown unit 'pa' (did you mean 'pA' or 'Pa'?)");
   EXPECT_EQ(refused("1 furlong"), "unknown unit 'furlong'");
 }
 
