@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(Units, BadQuantity, testing::Values(
     Bad{"1_000 m", no_number},
     Bad{". m", no_number},
     Bad{"2 u", "unknown unit 'u'"},
-    Bad{"2 UM", "unknown unit 'UM'"},
+    Bad{"2 UM", "unknown unit 'UM' (did you mean 'um'?)"},
     Bad{"2 min", "unknown unit 'min'"},
     Bad{"2 dm", "unknown unit 'dm'"},
     Bad{"2 cs", "unknown unit 'cs'"},
