@@ -484,7 +484,7 @@ TEST(NextMeasurement, KeepsToTheLimitsOfTheDrivers) {
     return largest;
   };
   EXPECT_GT(largest_level(prepare(plate())), 90);
-  EXPECT_LE(largest_level(prepare(plate({"driver.main.max_voltage=90 V"}))), 90);
+  EXPECT_LE(largest_level(prepare(plate({"driver.main.max_voltage=90 V", "waveform.main.level=80 V"}))), 90);
 }
 TEST(LeastSquares, PassesOnWhatItsFunctionThrows) {
   SKIP_WITHOUT_CERES();
