@@ -167,7 +167,7 @@ int run_search(const Asked& asked) {
 
   SearchSession& session = searching.session();
   const fs::path place = session.destination(report);
-  add_result(report, search, place, {.command = c.command});
+  add_result(report, search, place, c.command);
   ClosingRecord& result = report.result;
   result.search->limit = limit_of(asked, best);
   result.search->seeds = asked.seeds;
