@@ -49,7 +49,7 @@ template <class V>
 void set_parameters(V* lanes, const double* parameters, std::size_t l) {
   for (std::size_t i = 0; i < most_parameters; ++i) lanes[i][l] = parameters[i];
 }
-/// Returns f.operator()`<Law>`() for the law with this index in a variant of laws.
+/// Calls `f.operator()<Law>()` for the law with this index in a variant of laws.
 template <class Laws, std::size_t i = 0, class F>
 [[gnu::always_inline]] inline decltype(auto) with_law(int index, F&& f) {
   if constexpr (i + 1 < std::variant_size_v<Laws>) {
