@@ -9,7 +9,7 @@
 //
 // UsualContact and AnyContact are the corresponding laws of a contact.
 //
-// All code here depends on the type of the SIMD vectors: see simd_closings.h.
+// All code here depends on the type of the SIMD vectors: see simd_lanes.h.
 #pragma once
 
 #include <cstddef>
