@@ -40,8 +40,8 @@ class CommandLab final : public TuningLab {
 
   std::optional<ContactRecord> fire(const CommandedShot& shot, const SentSignals&) override {
     // The command may close its input after it has written its answer: read the answer before reporting a closed pipe.
-    const ChildProcess::Delivery told = child_.tell(line_text(shot_json(shot)), patience_);
-    if (told == ChildProcess::Delivery::late) throw late(fmt::format("did not read shot {}", shot.number));
+    const ChildProcess::Delivery delivery = child_.tell(line_text(shot_json(shot)), patience_);
+    if (delivery == ChildProcess::Delivery::late) throw late(fmt::format("did not read shot {}", shot.number));
     const LineReader::Line line = child_.next_line(patience_);
     if (line.end == LineReader::End::closed) throw ended_before(shot.number);
     if (line.end == LineReader::End::late) throw late(fmt::format("did not answer shot {}", shot.number));

@@ -54,7 +54,7 @@ struct PlanRequest {
 /// Throws InvalidInput.
 void read_list(PlanRequest& request, const std::string& path);
 /// Adds options of the study of every point, such as "impact-velocity=1 mm/s". Throws InvalidInput.
-void add_options(PlanRequest& request, const std::vector<std::string>& told);
+void add_options(PlanRequest& request, const std::vector<std::string>& given);
 /// Options of the study that are keys of [plan] in a plan file; all other options are in the list `options` of [plan].
 inline constexpr std::string_view plan_options[] = {"certify",  "samples",   "target", "actuator",
                                                     "waveform", "optimizer", "budget"};

@@ -140,13 +140,13 @@ class PlanReader {
 
 }  // namespace
 
-void add_options(PlanRequest& request, const std::vector<std::string>& told) {
-  for (std::size_t k = 0; k < told.size(); ++k) {
-    const std::size_t equals = told[k].find('=');
+void add_options(PlanRequest& request, const std::vector<std::string>& given) {
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    const std::size_t equals = given[k].find('=');
     require(equals != std::string::npos && equals > 0, [&] {
       return fmt::format("{}: must be NAME=VALUE, such as \"impact-velocity=1 mm/s\"", request.place("options", k));
     });
-    request.options[told[k].substr(0, equals)] = told[k].substr(equals + 1);
+    request.options[given[k].substr(0, equals)] = given[k].substr(equals + 1);
   }
 }
 

@@ -182,11 +182,11 @@ PythonObjective::~PythonObjective() {
 double PythonObjective::value(const Metrics& closing, const Metrics& step) const {
   const py::gil_scoped_acquire held;
   try {
-    const py::object told = value_(figures_of(closing), figures_of(step));
+    const py::object returned = value_(figures_of(closing), figures_of(step));
     try {
-      return told.cast<double>();
+      return returned.cast<double>();
     } catch (const py::cast_error&) {
-      throw InvalidInput("the objective '" + name_ + "' returned " + shown(told) + "; it must return a number");
+      throw InvalidInput("the objective '" + name_ + "' returned " + shown(returned) + "; it must return a number");
     }
   } catch (...) {
     first_.keep(std::current_exception());
@@ -204,14 +204,14 @@ void PythonObjective::values(std::span<const Metrics> closings, const Metrics& s
                      [&](const Metrics& one) { return figure.value(one); });
       all[py::str(std::string(figure.quantity()))] = column;
     }
-    const std::vector<double> told = numbers(value_(all, figures_of(step)), "the objective '" + name_ + "'");
-    require(told.size() == values.size(), [&] {
-      return "the objective '" + name_ + "' returned " + std::to_string(told.size()) + " values for " +
+    const std::vector<double> returned = numbers(value_(all, figures_of(step)), "the objective '" + name_ + "'");
+    require(returned.size() == values.size(), [&] {
+      return "the objective '" + name_ + "' returned " + std::to_string(returned.size()) + " values for " +
              std::to_string(values.size()) +
              " devices: in a search over devices its figures are arrays, "
              "and it must return an array with a value for each device";
     });
-    std::copy(told.begin(), told.end(), values.begin());
+    std::copy(returned.begin(), returned.end(), values.begin());
   } catch (...) {
     first_.keep(std::current_exception());
     throw;

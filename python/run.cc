@@ -65,9 +65,9 @@ InterruptibleRun::InterruptibleRun(py::object on_progress) : on_progress_(std::m
     }();
     constexpr auto least = milliseconds(100);
     const auto now = steady_clock::now().time_since_epoch();
-    auto told = told_.load(std::memory_order_relaxed);
-    if (given_up() || (now - steady_clock::duration(told) < least && part < 1) ||
-        !told_.compare_exchange_strong(told, now.count()))
+    auto noted = last_noted_.load(std::memory_order_relaxed);
+    if (given_up() || (now - steady_clock::duration(noted) < least && part < 1) ||
+        !last_noted_.compare_exchange_strong(noted, now.count()))
       return;
     call([&, name = what, done = part] { on_progress_(py::str(name), done); });
   };

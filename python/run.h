@@ -87,7 +87,7 @@ class InterruptibleRun {
   std::mutex lock_;
   std::exception_ptr first_;
   pybind11::object on_progress_;
-  std::atomic<std::chrono::steady_clock::rep> told_ = 0;
+  std::atomic<std::chrono::steady_clock::rep> last_noted_ = 0;
   std::mutex progress_lock_;  // guards `shown_` and `progress_`, since several threads may report progress
   MonotoneProgress shown_;
   Progress progress_;

@@ -78,9 +78,9 @@ py::dict parameters_of(const PyWaveform& waveform) {
 
 py::array_t<double> voltages(const PyWaveform& waveform,
                              const py::array_t<double, py::array::c_style | py::array::forcecast>& times) {
-  const Signal told = signal(waveform.value);
+  const Signal commanded = signal(waveform.value);
   py::array_t<double> volts(std::vector<py::ssize_t>(times.shape(), times.shape() + times.ndim()));
-  for (py::ssize_t i = 0; i < times.size(); ++i) volts.mutable_data()[i] = told.voltage(times.data()[i]);
+  for (py::ssize_t i = 0; i < times.size(); ++i) volts.mutable_data()[i] = commanded.voltage(times.data()[i]);
   return volts;
 }
 
@@ -89,14 +89,14 @@ py::array_t<double> voltages(const PyWaveform& waveform,
 PyWaveform resampled(const PyWaveform& waveform, double rate, double end) {
   require(rate > 0 && end > 0 && std::isfinite(rate * end) && rate * end <= 1e7,
           "resampled: rate and end must be above 0, and at most 1e7 samples");
-  const Signal told = signal(waveform.value);
+  const Signal commanded = signal(waveform.value);
   Table table;
   const auto count = static_cast<std::size_t>(std::ceil(rate * end));
   for (std::size_t k = 0; k <= count; ++k) {
     table.time.push_back(static_cast<double>(k) / rate);
-    table.voltage.push_back(told.voltage(table.time.back()));
+    table.voltage.push_back(commanded.voltage(table.time.back()));
   }
-  table.voltage.back() = told.hold_level();
+  table.voltage.back() = commanded.hold_level();
   return {table};
 }
 

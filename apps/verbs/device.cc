@@ -49,9 +49,9 @@ int run_device(const Common& c, const verbs::Arguments& arguments) {
   for (LineReader::Line line = lines.next(); line.end == LineReader::End::line; line = lines.next()) {
     if (trimmed(line.text).empty()) continue;
     try {
-      const json told = read_line(line.text);
-      if (is_end(told)) break;
-      print(line_text(answer(device, told)));
+      const json shot = read_line(line.text);
+      if (is_end(shot)) break;
+      print(line_text(answer(device, shot)));
     } catch (const InvalidInput& error) {
       print(line_text({{"shot", nullptr}, {"error", fmt::format("the line {}", error.what())}}));
     }
