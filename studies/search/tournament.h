@@ -2,7 +2,7 @@
 // tournaments, and differ in their contenders and in the measure of comparison:
 //
 //   optimize.h         waveform families on the nominal device, one after another, compared by their cost
-//   tournament.h             waveform families by two measures, compared on the devices of the next round
+//   family_tournament.h      waveform families by two measures, compared on the devices of the next round
 //   robust_optimize.h  distant points of one family, compared by their cost on all devices
 //   paced_search.h     one contender, which goes on in every round
 //
