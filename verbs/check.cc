@@ -206,84 +206,116 @@ struct CheckRequest : Usual {
 template <class Archive>
 void options(Archive&, CheckRequest&) {}
 
-Outcome run(const Setting& setting, const CheckRequest&) {
-  const Progress& progress = setting.progress;
-  const PreparedScene p = choose(prepare(setting.scene, false, progress, quick_pull_in), false, progress);
-  const Structure& s = p.scene.device.structure;
-  CheckRecord record{.file = setting.name,
-                     .title = p.scene.title,
-                     .dynamic_precision = precision_of(p.model),
-                     .duration = p.duration,
-                     .tolerance = p.tolerance,
-                     .warnings = p.scene.warnings};
-  std::vector<std::string>& warnings = record.warnings;
-  const auto add = [&](const std::string& name, const std::string& value) { record.lines.push_back({name, value}); };
-  std::vector<std::string> frequencies, few_summits;
-  for (const double omega : p.model.basis().angular_frequencies()) {
-    record.frequencies.push_back(omega);
-    frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
+// The check of a scene, subject by subject: lines of the report, numbers of the JSON, and warnings.
+class SceneCheck {
+ public:
+  // Keeps references to `setting` and `prepared`, which must outlive this object.
+  SceneCheck(const Setting& setting, const PreparedScene& prepared)
+      : setting_(setting),
+        p_(prepared),
+        record_{.file = setting.name,
+                .title = p_.scene.title,
+                .dynamic_precision = precision_of(p_.model),
+                .duration = p_.duration,
+                .tolerance = p_.tolerance,
+                .warnings = p_.scene.warnings} {}
+
+  [[nodiscard]] CheckRecord record() {
+    check_structure();
+    for (std::size_t k = 0; k < p_.scene.device.electrodes.size(); ++k) check_electrode(k);
+    check_dispersion();
+    check_gas();
+    for (const auto& [name, signal] : named_signals(p_)) check_drive(name, signal);
+    for (std::string& warning : gas_warnings(p_.scene.device, p_.scene.device.closed_gap(), 0))
+      record_.warnings.push_back(std::move(warning));
+    check_start();
+    check_contacts();
+    add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p_.duration, "s", 4), scientific(p_.tolerance)));
+    if (p_.model.has_contact()) check_closed_state();
+    setting_.progress.throw_if_stopped();
+    record_.origin = origin_of("check", p_, setting_.command);
+    return record_;
   }
-  add_parts(record, p.scene.device);
-  add_rest_shape(record, p.scene.device);
-  add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
-  if (p.model.has_contact()) add("in-contact period", quantity(p.model.basis().in_contact_period(), "s", 4));
-  // Pull-in voltages by electrode: a search derives its voltage limits from them where the scene gives no limits.
-  std::map<std::string, PullInVoltages> searched_to;
-  for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
-    const std::string& name = p.scene.device.electrodes[k].name;
-    if (!pulls_in(p.scene.device, k)) {
-      add("electrode " + name, "is on the far side and pulls away from the contact");
-      continue;
+
+ private:
+  void add(const std::string& name, const std::string& value) { record_.lines.push_back({name, value}); }
+
+  // Adds natural frequencies, parts and the rest shape.
+  void check_structure() {
+    std::vector<std::string> frequencies;
+    for (const double omega : p_.model.basis().angular_frequencies()) {
+      record_.frequencies.push_back(omega);
+      frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
     }
-    const auto known = p.pull_in.find(name);
-    const ElectrodeRecord found =
-        record_of(p, k, known != p.pull_in.end() ? known->second : quick_pull_in(p.model, k, bias_of(p.scene, k), progress));
+    add_parts(record_, p_.scene.device);
+    add_rest_shape(record_, p_.scene.device);
+    add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
+    if (p_.model.has_contact()) add("in-contact period", quantity(p_.model.basis().in_contact_period(), "s", 4));
+  }
+
+  // Adds the pull-in voltages of an electrode, from which a search derives its voltage limits where the scene gives none.
+  void check_electrode(std::size_t k) {
+    const std::string& name = p_.scene.device.electrodes[k].name;
+    if (!pulls_in(p_.scene.device, k)) {
+      add("electrode " + name, "is on the far side and pulls away from the contact");
+      return;
+    }
+    const auto known = p_.pull_in.find(name);
+    const ElectrodeRecord found = record_of(
+        p_, k, known != p_.pull_in.end() ? known->second : quick_pull_in(p_.model, k, bias_of(p_.scene, k), setting_.progress));
     const PullInRecord& v = found.volts;
     if (std::isfinite(v.static_pull_in) && std::isfinite(v.dynamic_pull_in))
-      searched_to[name] = {.static_pull_in = v.static_pull_in, .dynamic_pull_in = v.dynamic_pull_in};
+      searched_to_[name] = {.static_pull_in = v.static_pull_in, .dynamic_pull_in = v.dynamic_pull_in};
     if (found.status == Status::no_contact) {
       add("electrode " + name, "pulls away from the contact in the rest position: no pull-in voltage");
-      warnings.push_back(scene_note(setting.scene, "electrode." + name + ".gap", pulls_away));
-      continue;
+      record_.warnings.push_back(scene_note(setting_.scene, "electrode." + name + ".gap", pulls_away));
+      return;
     }
-    record.pull_in[name] = v;
-    if (std::isfinite(v.release)) record.hold_windows[name] = {v.release, v.pulled_through};
+    record_.pull_in[name] = v;
+    if (std::isfinite(v.release)) record_.hold_windows[name] = {v.release, v.pulled_through};
     const std::string bias = bias_prose(found);
     const std::string roughly =
-        p.model.film_states() > 0 && std::isfinite(v.static_pull_in) && v.dynamic_pull_in != v.static_pull_in
+        p_.model.film_states() > 0 && std::isfinite(v.static_pull_in) && v.dynamic_pull_in != v.static_pull_in
             ? " (known to 0.1 %, as are levels in Vdp below)"
             : "";
     add("electrode " + name, (found.status == Status::collapsed_at_rest
                                   ? no_open_state
                                   : fmt::format("Vsp {}, Vdp {}", volts(v.static_pull_in), dynamic_prose(v)) + roughly) +
-                                 (p.model.has_contact() ? ", release " + volts(v.release) : "") +
+                                 (p_.model.has_contact() ? ", release " + volts(v.release) : "") +
                                  (bias.empty() ? "" : ", under " + bias));
     if (const std::string charge = charge_prose(v); !charge.empty()) add("", "its charge " + charge);
     if (sticks_by_charge(v))
-      warnings.push_back(
-          scene_note(setting.scene, "electrode." + name + ".dielectric.charge", "keeps a closed switch closed at 0 V"));
+      record_.warnings.push_back(
+          scene_note(setting_.scene, "electrode." + name + ".dielectric.charge", "keeps a closed switch closed at 0 V"));
     if (v.by_modes) {
       std::string shifts = "more modes shift Vsp by " + shift_prose(v.by_modes->static_pull_in);
       if (std::isfinite(v.release)) shifts += ", release by " + shift_prose(v.by_modes->release);
       add("", shifts);
     }
-    if (const std::optional<Dielectric>& dielectric = p.scene.device.electrodes[k].dielectric)
+    if (const std::optional<Dielectric>& dielectric = p_.scene.device.electrodes[k].dielectric)
       add("", fmt::format("its dielectric adds {} to the gap of the field{}", given_quantity(dielectric->depth(), "m"),
-                          !p.scene.device.closes_on_dielectric() ? std::string()
-                          : p.scene.device.structure.is_rigid()  ? "; the plate lands on it"
-                                                                 : "; the beam lands on it"));
+                          !p_.scene.device.closes_on_dielectric() ? std::string()
+                          : p_.scene.device.structure.is_rigid()  ? "; the plate lands on it"
+                                                                  : "; the beam lands on it"));
   }
-  if (p.scene.device.dispersion) {
-    add("dispersion force", dispersion_prose(p, progress));
-    add("drive dispersion", "hold level " + plain_number(1 + p.signals()[p.scene.device.electrodes.size()].hold_level(), 5));
+
+  void check_dispersion() {
+    if (!p_.scene.device.dispersion) return;
+    add("dispersion force", dispersion_prose(p_, setting_.progress));
+    add("drive dispersion", "hold level " + plain_number(1 + p_.signals()[p_.scene.device.electrodes.size()].hold_level(), 5));
   }
-  if (const FilmState* const film = p.scene.device.gas ? film_of(*p.scene.device.gas) : nullptr) {
-    const double g = p.scene.device.gap.electrode;
-    const double closed = p.scene.device.closed_gap(), lambda = mean_free_path(*film);
-    const double omega = p.model.basis().angular_frequencies()[0], width = width_at(s, p.scene.device.contact_position());
-    const double most = limits_of(*p.scene.device.gas).most_squeeze;
+
+  // Adds squeeze and Knudsen numbers of the gas film.
+  void check_gas() {
+    const FilmState* const film = p_.scene.device.gas ? film_of(*p_.scene.device.gas) : nullptr;
+    if (film == nullptr) return;
+    const double g = p_.scene.device.gap.electrode;
+    const double closed = p_.scene.device.closed_gap(), lambda = mean_free_path(*film);
+    const double omega = p_.model.basis().angular_frequencies()[0],
+                 width = width_at(p_.scene.device.structure, p_.scene.device.contact_position());
+    const double most = limits_of(*p_.scene.device.gas).most_squeeze;
     const std::string holds =
-        std::isfinite(most) ? fmt::format("; the law {} holds below about {}", name_of(*p.scene.device.gas), plain_number(most))
+        std::isfinite(most) ? fmt::format("; the law {} holds below about {}", name_of(*p_.scene.device.gas), plain_number(most))
                             : "";
     add("squeeze number", fmt::format("{} at the rest gap, {} in the closed state (first mode{})",
                                       plain_number(squeeze_number(*film, width, g, omega)),
@@ -291,18 +323,20 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     add("Knudsen number", fmt::format("{} at the rest gap, {} in the closed state (mean free path {})", plain_number(lambda / g),
                                       plain_number(lambda / closed), given_quantity(lambda, "m", 3)));
   }
-  for (const auto& [name, signal] : named_signals(p)) {
-    const Drive& drive = p.drives.at(name);
-    const auto searched = searched_to.find(name);
+
+  // Adds levels, limits and errors of a drive.
+  void check_drive(const std::string& name, const Signal& signal) {
+    const Drive& drive = p_.drives.at(name);
+    const auto searched = searched_to_.find(name);
     std::string driver = "driver without limits";
     if (drive.limits) {
       driver = fmt::format("driver {} to {}", given_quantity(drive.limits->min_voltage, "V"),
                            given_quantity(drive.limits->max_voltage, "V"));
-    } else if (searched != searched_to.end()) {
+    } else if (searched != searched_to_.end()) {
       driver = fmt::format("no [driver.{}]: a search limits the voltage to 0 V to {}, {}", name,
                            default_limit_prose(searched->second), quantity(default_limit(searched->second), "V", 5));
       if (signal.peak() > default_limit(searched->second))
-        warnings.push_back(
+        record_.warnings.push_back(
             fmt::format("[waveform.{0}] reaches {1}, above the voltage limit of a search without [driver.{2}]. "
                         "optimize, release, limit and robustness refuse this scene: add [driver.{2}] with max_voltage, "
                         "or lower the waveform",
@@ -322,54 +356,66 @@ Outcome run(const Setting& setting, const CheckRequest&) {
     add("drive " + name, fmt::format("{}hold {}, peak {}, {}", before, given_quantity(signal.hold_level(), "V"),
                                      given_quantity(signal.peak(), "V"), driver));
   }
-  const double closed_gap = p.scene.device.closed_gap();
-  for (std::string& warning : gas_warnings(p.scene.device, closed_gap, 0)) warnings.push_back(std::move(warning));
-  if (const std::string start = start_prose(p); !start.empty()) add("start", start);
-  if (!p.start_equilibrium() && (p.scene.begins_closed || p.model.rest()))
-    warnings.push_back("the simulation cannot start: " + start_prose(p));
-  if (!p.model.has_contact()) add("contact", "none: the simulation ends at first touch");
-  if (p.model.contacts() > 1) {
+
+  void check_start() {
+    if (const std::string start = start_prose(p_); !start.empty()) add("start", start);
+    if (!p_.start_equilibrium() && (p_.scene.begins_closed || p_.model.rest()))
+      record_.warnings.push_back("the simulation cannot start: " + start_prose(p_));
+    if (!p_.model.has_contact()) add("contact", "none: the simulation ends at first touch");
+  }
+
+  // Adds the contacts of a switch with several, and the connection through them.
+  void check_contacts() {
+    if (p_.model.contacts() < 2) return;
     std::vector<std::string> connecting;
-    for (std::size_t c = 0; c < p.model.contacts(); ++c) {
-      const Contact& contact = p.scene.device.contacts[c];
-      const std::string place = p.scene.device.structure.is_rigid()
+    for (std::size_t c = 0; c < p_.model.contacts(); ++c) {
+      const Contact& contact = p_.scene.device.contacts[c];
+      const std::string place = p_.scene.device.structure.is_rigid()
                                     ? std::string()
-                                    : "at " + given_quantity(p.scene.device.contact_position(c), "m", 4) + ", ";
+                                    : "at " + given_quantity(p_.scene.device.contact_position(c), "m", 4) + ", ";
       add("contact " + contact.name,
-          fmt::format("{}gap {}, {}{}{}", place, given_quantity(p.model.contact_gap(c), "m", 4), name_of(contact.model),
+          fmt::format("{}gap {}, {}{}{}", place, given_quantity(p_.model.contact_gap(c), "m", 4), name_of(contact.model),
                       contact.count > 1 ? fmt::format(", {} of them", contact.count) : "",
                       contact.side == Side::far ? ", a back stop" : ""));
       if (contact.connects) connecting.push_back(contact.name);
     }
     add("connection", fmt::format("closed while {} {} closed; static figures are those of contact {}",
-                                  fmt::join(connecting, p.scene.device.connection == Connection::all ? " and " : " or "),
-                                  connecting.size() > 1 && p.scene.device.connection == Connection::all ? "are" : "is",
-                                  p.scene.device.contacts.front().name));
+                                  fmt::join(connecting, p_.scene.device.connection == Connection::all ? " and " : " or "),
+                                  connecting.size() > 1 && p_.scene.device.connection == Connection::all ? "are" : "is",
+                                  p_.scene.device.contacts.front().name));
   }
-  add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
-  if (p.model.has_contact()) {
-    record.stable_path = stable_path_of(p, progress);
-    add("stable path", words_of(record.stable_path));
-    if (const auto command = open_command(p, p.signals()))
+
+  // Adds what is known of the switch while the hold levels keep it closed.
+  void check_closed_state() {
+    record_.stable_path = stable_path_of(p_, setting_.progress);
+    add("stable path", words_of(record_.stable_path));
+    if (const auto command = open_command(p_, p_.signals()))
       add("command to open", fmt::format("at {}{}", given_quantity(command->time, "s", 4),
-                                         std::isfinite(p.scene.simulate.open_at) ? "" : ", given by the waveforms"));
-    const std::vector<Signal> held = until_command(p, p.signals());
-    const ClosedState state = closed_state(p, held);
-    record.closed_state = state;
+                                         std::isfinite(p_.scene.simulate.open_at) ? "" : ", given by the waveforms"));
+    const std::vector<Signal> held = until_command(p_, p_.signals());
+    const ClosedState state = closed_state(p_, held);
+    record_.closed_state = state;
     add("closed state", closed_state_prose(state));
-    if (p.scene.device.closes_along_face()) add("", capacitance_prose(p));
-    const Hold hold = hold_of(p.model, held);
-    if (const auto summits = hold.closed ? summits_at_hold(p.model, *hold.closed) : std::nullopt)
+    if (p_.scene.device.closes_along_face()) add("", capacitance_prose(p_));
+    const Hold hold = hold_of(p_.model, held);
+    if (const auto summits = hold.closed ? summits_at_hold(p_.model, *hold.closed) : std::nullopt)
       add("contact", summits_prose(*summits));
-    if (std::string few = few_summits_warning(p.model, held); !few.empty()) few_summits.push_back(std::move(few));
-    if (std::string lost = hold_warning(p.model, held, state); !lost.empty() && !p.scene.begins_closed)
-      warnings.push_back(std::move(lost));
+    if (std::string lost = hold_warning(p_.model, held, state); !lost.empty() && !p_.scene.begins_closed)
+      record_.warnings.push_back(std::move(lost));
+    if (std::string few = few_summits_warning(p_.model, held); !few.empty()) record_.warnings.push_back(std::move(few));
   }
-  progress.throw_if_stopped();
-  warnings.insert(warnings.end(), few_summits.begin(), few_summits.end());
-  record.origin = origin_of("check", p, setting.command);
-  Outcome outcome = shown(record);
-  if (s.find<Beam>() != nullptr)
+
+  const Setting& setting_;
+  const PreparedScene& p_;
+  CheckRecord record_;
+  std::map<std::string, PullInVoltages> searched_to_;  // pull-in voltages by electrode, for the limits of a search
+};
+
+Outcome run(const Setting& setting, const CheckRequest&) {
+  const Progress& progress = setting.progress;
+  const PreparedScene p = choose(prepare(setting.scene, false, progress, quick_pull_in), false, progress);
+  Outcome outcome = shown(SceneCheck(setting, p).record());
+  if (p.scene.device.structure.find<Beam>() != nullptr)
     outcome.files = {
         {"beam.svg", [title = p.scene.title, device = p.scene.device] { return beam_drawing(title, device); }, "beam.svg"}};
   return outcome;
