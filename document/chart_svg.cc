@@ -186,7 +186,7 @@ Axes axes_of(const CurveTables& tables, const Chart& chart, double width, double
 
 std::string chart_legend(const Chart& chart, double top) {
   std::string out;
-  if (chart.is_of_bars) return out;  // a chart of bars has no legend: each bar has its name beside it
+  if (chart.is_of_bars) return out;  // a chart of bars has no legend: each bar has its name at its end
   double legend_x = left;
   for (const Series& one : chart.series) {
     if (one.label.empty()) continue;
@@ -295,7 +295,7 @@ std::string chart_bar(const CurveTable& table, const Chart& chart, std::size_t n
       out += fmt::format("<path d=\"{}\" stroke=\"{}\" stroke-width=\"{}\" stroke-opacity=\"{}\"/>\n", paths[kind],
                          stroke(one.role).colour, bar_height - 8, kind == 0 ? 0.45 : 1);
   }
-  return chart.series.size() == 1 ? out : out + label(axes.x.pixel_low + 6, middle + 4, "start", ink, 12, one.label, halo);
+  return chart.series.size() == 1 ? out : out + label(axes.x.pixel_high - 6, middle + 4, "end", ink, 12, one.label, halo);
 }
 
 std::string chart_band(const CurveTables& tables, const Chart& chart, const Band& band, const Axes& axes) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <tuple>
 
+#include "base/choice.h"
 #include "base/printable.h"
 #include "base/require.h"
 #include "base/split.h"
@@ -158,9 +159,8 @@ ReportSection outcome_section(const ExplorationReport& report) {
 std::string front_prose(const ExplorationReport& report, const ExploredFront& front) {
   std::vector<std::string> names;
   for (const ExploredAim& aim : report.aims) names.push_back(aim_name(report, aim));
-  std::string words =
-      fmt::format("{} that no other point improves in all of {}",
-                  counted(static_cast<std::int64_t>(front.members.size()), "point", "points"), fmt::join(names, ", "));
+  std::string words = fmt::format("{}. No other point that settles is better in {} together",
+                                  counted(static_cast<std::int64_t>(front.members.size()), "point", "points"), in_words(names));
   if (std::isfinite(front.hypervolume)) {
     std::vector<std::string> reference;
     for (std::size_t i = 0; i < front.reference.size(); ++i)
@@ -207,7 +207,8 @@ ReportSection front_section(const ExplorationReport& report, const ExploredFront
   const std::size_t stride = (front.members.size() + most_front_rows - 1) / most_front_rows;
   section.parts = {
       Paragraph{"Pareto front: " + front_prose(report, front)},
-      drawing_of("<p>To read a point, move over the picture, or focus it and press ← →. Grey dots are the other points.</p>\n"),
+      drawing_of("<p>To read a point, move over the picture, or focus it and press ← →. Grey dots are the other points, "
+                 "also those that do not settle.</p>\n"),
       drawn(),
       front_table(report, front, stride),
       Paragraph{.text = front.knee ? "* is the knee, where the front bends most." : "", .is_note = true},

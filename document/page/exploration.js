@@ -603,7 +603,7 @@
     if (data.waveforms) {
       drives = canvas(signals, "Drives of the point", 190, (ctx, {width, height}) => {
         if (!lines) return;
-        const box = {left: 46, right: width - 8, top: 24, bottom: height - 40};
+        const box = {left: 46, right: width - 16, top: 24, bottom: height - 40};
         const all = Object.values(lines).flat();
         const lastTime = Math.max(...all.map(([t]) => t));
         const levels = all.map(([, v]) => v);

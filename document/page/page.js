@@ -169,11 +169,11 @@
       ctx.fillStyle = colour("ink");
       ctx.font = font(12 * uPlot.pxRatio);
       ctx.textBaseline = "middle";
-      ctx.textAlign = "left";
+      ctx.textAlign = "right"; // the end of a closing hides less than the first touches
       ctx.lineJoin = "round";
       ctx.lineWidth = 4 * uPlot.pxRatio;
       ctx.strokeStyle = colour("paper");
-      for (const act of ["strokeText", "fillText"]) ctx[act](label, bbox.left + 6 * uPlot.pxRatio, top + 0.35 * row);
+      for (const act of ["strokeText", "fillText"]) ctx[act](label, bbox.left + bbox.width - 6 * uPlot.pxRatio, top + 0.35 * row);
     });
   };
 
