@@ -36,7 +36,7 @@ std::string missed_share(double share) { return share >= 1 ? "all" : percent(std
 std::string missed_text(double q2) { return std::isfinite(q2) ? missed_share(1 - q2) : "—"; }
 
 ReportTable compared(const BoxAndChaosRecord& ways, const DriveRecord& drive) {
-  ReportTable table{.head = {"Cross-checks, under " + shown_drive(drive.name)}, .rows = {}};
+  ReportTable table{.head = {"Cross-checks, under " + with_article(drive.name)}, .rows = {}};
   for (const RangeRecord& r : ways.ranges) table.head.emplace_back(figure_of(r.key).symbol);
   const auto add = [&](TableCell name, auto&& cell) {
     TableRow& row = table.rows.emplace_back(TableRow{std::move(name)});

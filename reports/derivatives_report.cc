@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/choice.h"
 #include "document/quantity.h"
 #include "reports/robustness_prose.h"
 
@@ -59,7 +60,7 @@ std::string meaning_of(const Derived& derivatives) {
       "Exact derivatives at the nominal design under {}. A cell has the change of the figure in per cent for one per cent of the "
       "quantity, and the change for one standard deviation. To first order the squares of these changes add up to the variance. "
       "A rebound that appears or disappears is not a small change: trust the sample where the two standard deviations differ.",
-      shown_drive(derivatives.drive));
+      with_article(derivatives.drive));
   std::vector<std::string> apart;
   for (const Derived::Of& figure : derivatives.figures) {
     if (!figure.by.empty() && !figure.agrees) apart.emplace_back(figure_of(figure.key).symbol);
@@ -68,7 +69,7 @@ std::string meaning_of(const Derived& derivatives) {
     words += fmt::format(
         " The derivatives of {} are not shown: their standard deviation differs from that of the devices by more than a factor "
         "of {:g}.",
-        fmt::join(apart, ", "), most_apart);
+        in_words(apart), most_apart);
   }
   if (derivatives.grazes) {
     words += fmt::format(
@@ -119,7 +120,7 @@ ReportSection derivatives_section(const Derived& derivatives, const RobustnessRe
   ReportTable table{.head = {derivatives.grazes ? "To first order (grazing)" : "To first order", "Nominal"}, .rows = {}};
   table.head.front().html = "Figure";
   for (const auto& [name, variable] : derivatives.variables) table.head.emplace_back(name);
-  table.head.insert(table.head.end(), {"Standard deviation", "Standard deviation of the devices"});
+  table.head.insert(table.head.end(), {"First-order standard deviation", "Standard deviation of the devices"});
   for (const Derived::Of& figure : derivatives.figures) {
     const Figure& of = figure_of(figure.key);
     TableRow& row = table.rows.emplace_back(TableRow{of.name, quantity(figure.nominal, of.unit)});

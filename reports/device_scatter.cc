@@ -81,19 +81,24 @@ std::string scatter(const VariedQuantity& quantity, const Figure& figure, const 
   }
   if (dots["x"].empty()) return {};
   const auto [low, high] = std::ranges::minmax(quantity.values);
-  Chart chart{.id = fmt::format("scatter-{}", number),
-              .title = fmt::format("{} by {}", figure.name, quantity.name),
-              .caption = "",
-              .x_column = "x",
-              .x_label = quantity.name,
-              .x_unit = quantity.unit,
-              .y_label = std::string(figure.name),
-              .y_unit = std::string(figure.unit),
-              .x_home = {low, high},
-              .x_whole = {low, high},
-              .y_home = std::array{0.0, most > 0 ? most : 1.0},
-              .height = 200,
-              .series = {{.table = "dots", .column = "y", .label = "", .role = Role::evaluations}}};
+  const auto [least, largest] = std::ranges::minmax(dots["y"]);
+  // The axes have a margin, so that no dot lies on an edge.
+  constexpr double share = 0.04;
+  const double x_margin = share * (high - low), y_margin = share * (largest - least);
+  Chart chart{
+      .id = fmt::format("scatter-{}", number),
+      .title = fmt::format("{} by {}", figure.name, quantity.name),
+      .caption = "",
+      .x_column = "x",
+      .x_label = quantity.name,
+      .x_unit = quantity.unit,
+      .y_label = std::string(figure.name),
+      .y_unit = std::string(figure.unit),
+      .x_home = {low - x_margin, high + x_margin},
+      .x_whole = {low - x_margin, high + x_margin},
+      .y_home = largest > least ? std::array{least - y_margin, largest + y_margin} : std::array{0.0, most > 0 ? most : 1.0},
+      .height = 200,
+      .series = {{.table = "dots", .column = "y", .label = "", .role = Role::evaluations}}};
   if (tables["medians"]["x"].size() > 1)
     chart.series.push_back({.table = "medians", .column = "y", .label = "", .role = Role::best});
   return small_picture(tables, chart);
@@ -113,16 +118,16 @@ std::string scatter_html(const RobustnessReport& report) {
   }
   if (pictures.empty()) return {};
   return fmt::format(
-      "<p>Each dot is a device under {} (the first {} are shown); the line joins medians of neighbouring devices.</p>\n"
+      "<p>Each dot is a device under {} (the first {} are shown). The line joins medians of neighbouring devices.</p>\n"
       "<div class=\"multiples\">\n{}</div>\n",
-      escaped(shown_drive(drive.name)), std::min(most_dots, report.found.devices), pictures);
+      escaped(with_article(drive.name)), std::min(most_dots, report.found.devices), pictures);
 }
 
 }  // namespace
 
 ReportSection internal::device_scatter(const RobustnessReport& report) {
   return {.id = "scatter",
-          .heading = "Each figure against each quantity",
+          .heading = "Figures against varied quantities",
           .parts = {Drawing{[&report](const Picture&) { return scatter_html(report); }}}};
 }
 

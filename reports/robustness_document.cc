@@ -38,6 +38,7 @@ using internal::quantile_text;
 using internal::quantity;
 using internal::shown_drive;
 using internal::some_collapse;
+using internal::with_article;
 using internal::worst_prose;
 using internal::yield_text;
 
@@ -82,7 +83,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
       .y_home = std::array{0.0, 100.0},
       .height = 260};
   std::replace(chart.id.begin(), chart.id.end(), '_', '-');
-  double most = 0;
+  double least = std::numeric_limits<double>::infinity(), most = 0;
   for (std::size_t i = 0; i < drives.size(); ++i) {
     std::vector<double> values;
     for (const DeviceOutcome& o : drives[i].outcomes) {
@@ -97,6 +98,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
       table["x"].push_back(values[k]);
       table["y"].push_back(100 * static_cast<double>(k + 1) / all);
     }
+    least = std::min(least, values.front());
     // Choose the range of x of a figure of merit so that it covers 99 % of the devices under every set of drive waveforms.
     most = std::max(most, values[std::min(values.size() - 1, values.size() * 99 / 100)]);
     chart.series.push_back(
@@ -105,6 +107,9 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
   }
   chart.x_whole[0] = 0;
   chart.x_home = {0, most > 0 ? most : 1};
+  // The axis begins at 0, unless this leaves more than half of it empty.
+  constexpr double margin = 0.1;
+  if (least > most / 2 && least < most) chart.x_home[0] = least - margin * (most - least);
   chart.x_whole[1] = std::max(chart.x_whole[1], chart.x_home[1]);
   return chart;
 }
@@ -199,7 +204,7 @@ internal::Chart course_chart(const RobustnessReport& report, internal::CurveTabl
       .id = "courses",
       .title = "Typical closings",
       .caption = fmt::format("Gap of the devices at the 5th, 50th and 95th percentile of the highest rebound under {}.",
-                             shown_drive(report.found.drives.back().name)),
+                             with_article(report.found.drives.back().name)),
       .x_column = "time_s",
       .x_label = "Time",
       .x_unit = "s",
@@ -342,7 +347,7 @@ ReportSection sensitivity_section(const RobustnessRecord& record) {
   section.parts = {
       std::move(table),
       Paragraph{.text = fmt::format(
-                    "Sobol' indices under the last drive, from {} rows of devices. The first-order index is the share of a "
+                    "Sobol' indices under the last waveform, from {} rows of devices. The first-order index is the share of a "
                     "figure's variance that would vanish if the quantity were known; the total index is the share in which the "
                     "quantity takes part. Where a figure jumps with a rebound, percentiles say more than variances.",
                     record.sensitivity.front().rows),
@@ -360,6 +365,15 @@ double number_of(const std::map<std::string, double>& all, std::string_view name
   return found == all.end() ? Metrics::unset : found->second;
 }
 
+// Returns the reason why a device has no figures: its failure, or its outcome in words.
+std::string why_no_figures(const RobustnessRecord::Device& device) {
+  if (!device.failure.empty()) return device.failure;
+  if (device.status == to_string(Status::no_contact)) return "stays open";
+  std::string words = device.status;
+  std::ranges::replace(words, '_', ' ');
+  return words;
+}
+
 ReportSection worst_section(const RobustnessRecord& record) {
   ReportSection section{.id = "worst", .heading = "The worst devices", .parts = {}, .shown = ShownIn::page};
   if (record.devices == 0) return section;
@@ -375,12 +389,12 @@ ReportSection worst_section(const RobustnessRecord& record) {
       for (const std::string_view key : {drawn_figures[1], drawn_figures[0], drawn_figures[2]})
         row.emplace_back(quantity(number_of(device.figures, key), figure_of(key).unit));
     } else {
-      row.emplace_back(device.failure.empty() ? device.status : device.failure, "missing", 3);
+      row.emplace_back(why_no_figures(device), "missing", 3);
     }
   }
   if (!table.rows.empty())
     section.parts = {std::move(table),
-                     Paragraph{.text = fmt::format("The drive is: {}.", shown_drive(last.name)), .is_note = true}};
+                     Paragraph{.text = fmt::format("The waveform is {}.", with_article(last.name)), .is_note = true}};
   return section;
 }
 

@@ -14,6 +14,8 @@ std::string shown_drive(const std::string& name) {
   return name == for_the_devices ? "best.toml" : name == for_nominal_design ? "drawing.toml" : name;
 }
 
+std::string with_article(const std::string& name) { return name == plain_step_row ? "the plain step" : shown_drive(name); }
+
 std::string spread_prose(const DeviceSpread& spread) {
   std::string words;
   for (const SpreadVariable& v : spread.variables) {

@@ -16,6 +16,8 @@ namespace softland::internal {
 /// Returns the name by which reports show a set of waveforms: the file of a waveform found under process variation, or else
 /// `name`.
 [[nodiscard]] std::string shown_drive(const std::string& name);
+/// Returns the same name for use in a sentence: "the plain step", "best.toml".
+[[nodiscard]] std::string with_article(const std::string& name);
 
 /// Returns a number of devices in words: "1 device", "2000 devices".
 [[nodiscard]] std::string devices_text(std::uint64_t devices);

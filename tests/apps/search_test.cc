@@ -657,7 +657,7 @@ TEST(Robustness, LeavesTheWorstDevicesOfTheBox) {
   const Outcome o = here.run({"robustness", "gold.toml", "--set", "waveform.main.level=17.77 V", "--set",
                               "simulate.duration=60 us", "--samples", "24", "--quiet", "--other-ways", "--out", "out"});
   ASSERT_EQ(o.status, 0) << o.err;
-  EXPECT_NE(o.out.find("Cross-checks, under plain step"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("Cross-checks, under the plain step"), std::string::npos) << o.out;
   EXPECT_NE(o.out.find("box-*.toml"), std::string::npos) << o.out;
   const json box = json::parse(read(here.path() / "out/robustness.json"))["other_ways"]["box"];
   EXPECT_LE(box["closings"], 1800) << "as --help says";
