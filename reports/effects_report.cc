@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
 
+#include "base/choice.h"
 #include "base/require.h"
 #include "document/document.h"
 #include "document/json_number.h"
@@ -83,14 +85,16 @@ ReportTable laws_table(const Effects& effects) {
 
 std::string spread_of_laws(const Effects& effects) {
   std::string words;
+  bool is_closed = false;
   for (const Figure& f : compared_figures) {
     if (!std::isfinite(f.value(effects.own("gas").metrics))) continue;
+    is_closed = true;
     const double spread = effects.spread("gas", f);
-    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", f.symbol,
-                         std::isfinite(spread) ? internal::percent(spread) : "unknown");
+    if (std::isfinite(spread)) words += fmt::format("{}{} {}", words.empty() ? "" : ", ", f.symbol, internal::percent(spread));
   }
+  if (!is_closed) return "The gas laws cannot be compared: the switch does not close under that of the scene.";
   return words.empty()
-             ? "The gas laws cannot be compared: the switch does not close under that of the scene."
+             ? "There is no relative range of the figures over the gas laws: the switch does not close under all of them."
              : "Relative range of the figures over the gas laws (largest minus smallest value, over that of the scene): " +
                    words + ".";
 }
@@ -112,6 +116,29 @@ std::vector<std::string> bounds_of(const Effects& effects) {
   return lines;
 }
 
+// Returns a sentence with the gas laws under which the switch does not close in the whole simulated time; empty if there are
+// none.
+std::string laws_without_contact(const Effects& effects) {
+  std::vector<std::string> laws;
+  for (const Effect& e : effects.list) {
+    if (!e.in_scene && !e.end && e.metrics.status == Status::no_contact) laws.push_back(e.choice == "none" ? "no gas" : e.choice);
+  }
+  if (laws.empty()) return {};
+  return fmt::format("The switch does not close within the simulated {} under {}.", internal::quantity(effects.window, "s"),
+                     in_words(laws));
+}
+
+// Returns the symbols of the compared figures with their names: "t_i: first contact, v_i: impact velocity".
+std::string symbols_in_words() {
+  std::string words;
+  for (const Figure& f : compared_figures) {
+    std::string name(f.name);
+    name.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(name.front())));
+    words += fmt::format("{}{} is the {}", words.empty() ? "" : ", ", f.symbol, name);
+  }
+  return words;
+}
+
 // Returns a line per warning, with the names of the laws to which the warning applies.
 std::vector<std::string> warnings_of(const Effects& effects) {
   // Per warning: names of the laws to which it applies, and its text.
@@ -128,7 +155,10 @@ std::vector<std::string> warnings_of(const Effects& effects) {
   }
   std::vector<std::string> lines;
   for (const NotCompared& n : effects.not_compared) lines.push_back(n.choice + " is not compared: " + n.reason);
-  for (const auto& [laws, what] : warnings) lines.push_back(fmt::format("{}: {}", laws, what));
+  for (const auto& [laws, what] : warnings) {
+    const bool names_the_law = what.starts_with("gas law " + laws + ":");
+    lines.push_back(names_the_law ? what : fmt::format("{}: {}", laws, what));
+  }
   return lines;
 }
 
@@ -217,10 +247,10 @@ std::string text_of(const EffectsRecord& record) {
                                               ? "Interrupted before any effect was left out."
                                               : "Nothing is left out: the scene has no effect that can be left out."});
   left_out.parts.emplace_back(omissions_table(effects));
-  left_out.parts.emplace_back(
-      Paragraph{"The columns have the change of the figures when one effect is left out under the same voltages; rhs is the time "
-                "of one right-hand side without it. simulate.effects = \"auto\" leaves out the effects that change the figures "
-                "by less than simulate.effects_tolerance."});
+  left_out.parts.emplace_back(Paragraph{
+      "The columns have the change of the figures when one effect is left out under the same voltages: " + symbols_in_words() +
+      ". rhs is the computing time of one evaluation of the right-hand side without the effect. simulate.effects = "
+      "\"auto\" leaves out the effects that change the figures by less than simulate.effects_tolerance."});
   ReportSection laws{.id = "laws",
                      .heading = "Other gas laws",
                      .parts = {laws_table(effects),
@@ -228,6 +258,8 @@ std::string text_of(const EffectsRecord& record) {
                                          "both at the gap of the closed tip. The other columns are figures of the whole closing, "
                                          "with their change relative to the law of the scene."},
                                Paragraph{spread_of_laws(effects)}}};
+  if (const std::string laws_that_stay_open = laws_without_contact(effects); !laws_that_stay_open.empty())
+    laws.parts.emplace_back(Paragraph{laws_that_stay_open});
   for (const std::string& line : bounds_of(effects)) laws.parts.emplace_back(Paragraph{line});
   for (const std::string& line : warnings_of(effects)) laws.parts.emplace_back(Paragraph{line});
   document.sections = {std::move(left_out), std::move(laws)};
