@@ -113,9 +113,9 @@ std::string SearchRun::duration_prose(int jobs, double max_seconds) const {
   std::string text = "; simulating a closing takes " + internal::quantity(e.closing, "s");
   if (std::isfinite(max_seconds)) return text;
   const double seconds = e.seconds / std::max(1, jobs), minute = 60, hour = 3600;
-  text += seconds < 2 * minute ? fmt::format(", all about {:.0f} s", std::max(1.0, seconds))
-          : seconds < 2 * hour ? fmt::format(", all about {:.0f} min", seconds / minute)
-                               : fmt::format(", all about {:.0f} h", seconds / hour);
+  text += seconds < 2 * minute ? fmt::format(", the whole search about {:.0f} s", std::max(1.0, seconds))
+          : seconds < 2 * hour ? fmt::format(", the whole search about {:.0f} min", seconds / minute)
+                               : fmt::format(", the whole search about {:.0f} h", seconds / hour);
   if (!e.has_fewer) return text;
   text += e.closings > 0 && e.evaluations > 0
               ? fmt::format(": {} evaluations and {} closings of devices", e.evaluations, e.closings)

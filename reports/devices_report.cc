@@ -233,7 +233,7 @@ std::string internal::nominal_prose(const DevicesFindings& d) {
   }
   if (!std::isfinite(height))
     return "No waveform was found that keeps the nominal design closed; drawing.toml is the best of them.";
-  return fmt::format("drawing.toml, searched for the nominal design alone, makes it rebound by up to {}.", quantity(height, "m"));
+  return fmt::format("drawing.toml, searched for the nominal design alone, lets it rebound by up to {}.", quantity(height, "m"));
 }
 
 std::string internal::devices_headline(const ClosingRecord& result) {
@@ -383,17 +383,26 @@ std::string measuring_prose(const DevicesFindings& d) {
                    what, speed_of(*measured));
 }
 
+std::string export_heading(const DevicesFindings& d) {
+  return d.measured.empty() ? "Export for the voltage source" : "Export for a measured device";
+}
+
 }  // namespace
 
 ReportSection internal::choices_section(const DevicesFindings& d) {
   ReportSection section{.id = "choices", .heading = "Choices", .parts = {}, .shown = ShownIn::terminal};
   if (d.rows.empty()) return section;
   section.parts.emplace_back(choices_table(d));
+  section.parts.emplace_back(
+      Paragraph{"The column ≤ 1 / 10 / 100 nm is the share of devices whose highest rebound is at most 1, 10 and 100 nm."});
   std::string words = fmt::format("Process variation: {}.", d.spread);
   for (const std::string& more : {path_prose(d), delay_prose(d), measuring_prose(d), nominal_prose(d)})
     words += (more.empty() ? "" : " ") + more;
   section.parts.emplace_back(Paragraph{std::move(words)});
-  if (!d.next_command.empty()) section.parts.emplace_back(ReportList{{d.next_command}});
+  if (!d.next_command.empty()) {
+    section.parts.emplace_back(Paragraph{export_heading(d) + ":"});
+    section.parts.emplace_back(ReportList{{d.next_command}});
+  }
   return section;
 }
 
@@ -422,7 +431,7 @@ ReportSection internal::devices_section(const DevicesFindings& d) {
     note(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
                      percent(c.share.value)));
   if (!d.next_command.empty()) {
-    section.parts.emplace_back(SubHeading{d.measured.empty() ? "Export for the voltage source" : "Export for a measured device"});
+    section.parts.emplace_back(SubHeading{export_heading(d)});
     section.parts.emplace_back(ReportList{{d.next_command}});
   }
   section.parts.emplace_back(

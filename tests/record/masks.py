@@ -31,7 +31,7 @@ TEXT_MASKS = [(verb, file, re.compile(expression, re.M)) for verb, file, express
     ("status", "stdout", r"(^  last run +[^ ]+ rows?)(?: in .*)?($)"),
     ("status", "stdout", r"(^ +until ).*(, run \d+$)"),
     ("status", "stdout", r"(^  program +)[0-9a-f]{40}($)"),
-    ("optimize", "stderr", rf"(; simulating a closing takes ){_TIME}(, all about ){_TIME}(.*$)"),
+    ("optimize", "stderr", rf"(; simulating a closing takes ){_TIME}(, the whole search about ){_TIME}(.*$)"),
     ("simulate", "stderr", rf"(: one evaluation of the equations of motion takes ){_TIME}( instead of ){_TIME}(, ).*( less$)"),
     ("accuracy", "stdout", r"(\AA closing with [^.]*? takes )[\s\S]*?(\n\n)"),
     ("accuracy", "stdout", r"(^1e-\d+ ) +[a-z].*($)"),
