@@ -83,20 +83,16 @@ double hardest(const CycleRecord::Drive& drive, double Metrics::*figure) {
   return most;
 }
 
-// Compares the found waveforms with plain steps at the cycle rate of the report.
-std::string comparison(const CycleRecord& r) {
-  const auto words = [&](const CycleRecord::Drive& drive) {
-    const bool sticks = std::ranges::any_of(drive.cycles, [](const auto& c) { return !std::isfinite(c.metrics.opening_time); });
-    const bool misses = std::ranges::any_of(drive.cycles, [](const auto& c) { return !c.metrics.touched(); });
-    if (drive.cycles.empty()) return std::string("could not be simulated");
-    if (misses || sticks) return fmt::format("does not {} in every cycle", misses ? "close" : "open");
-    const double height = hardest(drive, &Metrics::major_bounce_height);
-    return fmt::format("has impact velocities of up to {} and {}",
-                       quantity(hardest(drive, &Metrics::largest_impact_velocity), "m/s"),
-                       height > 0 ? "rebounds by up to " + quantity(height, "m") : std::string("does not rebound"));
-  };
-  return fmt::format("At {} the switch {} with these waveforms; with plain steps it {}.", quantity(r.rate, "Hz"),
-                     words(r.drives.back()), words(r.drives.front()));
+// Describes what the switch does in the cycles of a drive that the report shows: "does not open in every cycle".
+std::string outcome_of(const CycleRecord::Drive& drive) {
+  const bool sticks = std::ranges::any_of(drive.cycles, [](const auto& c) { return !std::isfinite(c.metrics.opening_time); });
+  const bool misses = std::ranges::any_of(drive.cycles, [](const auto& c) { return !c.metrics.touched(); });
+  if (drive.cycles.empty()) return "could not be simulated";
+  if (misses || sticks) return fmt::format("does not {} in every cycle", misses ? "close" : "open");
+  const double height = hardest(drive, &Metrics::major_bounce_height);
+  return fmt::format("has impact velocities of up to {} and {}",
+                     quantity(hardest(drive, &Metrics::largest_impact_velocity), "m/s"),
+                     height > 0 ? "rebounds by up to " + quantity(height, "m") : std::string("does not rebound"));
 }
 
 std::string finding(const CycleRecord& r) {
@@ -104,10 +100,10 @@ std::string finding(const CycleRecord& r) {
   const CycleRecord::Drive &plain = r.drives.front(), &found = found_of(r);
   if (found.steady_rates.empty() && found.other_rates.empty()) {
     if (!std::isfinite(r.rate)) return "The switch does not close and return to rest, so no rate can be scanned.";
-    if (r.drives.size() > 1) return comparison(r);
-    const bool sticks = std::ranges::any_of(found.cycles, [](const auto& c) { return !std::isfinite(c.metrics.opening_time); });
-    return fmt::format("The switch is cycled at {}{}.", quantity(r.rate, "Hz"),
-                       sticks ? "; it does not open in every cycle" : "");
+    if (r.drives.size() == 1)
+      return fmt::format("At {} the switch {} with plain steps.", quantity(r.rate, "Hz"), outcome_of(plain));
+    return fmt::format("At {} the switch {} with these waveforms; with plain steps it {}.", quantity(r.rate, "Hz"),
+                       outcome_of(found), outcome_of(plain));
   }
   const auto at = [](double rate) {
     return std::isfinite(rate) ? "at rates of up to " + quantity(rate, "Hz") : std::string("at no rate of the scan");
