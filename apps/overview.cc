@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 #include "apps/stores.h"
 #include "base/printable.h"
@@ -10,12 +11,15 @@
 #include "document/document.h"
 #include "document/quantity.h"
 #include "document/text.h"
+#include "objectives/figures.h"
 
 namespace softland::apps {
 namespace {
 
 using internal::quantity;
 using nlohmann::json;
+
+constexpr std::string_view settled = key_of(&Metrics::settled);
 
 }  // namespace
 
@@ -64,6 +68,7 @@ std::string overview_text(const StoredPlan& plan, const Overview& found) {
     const StoredColumn& column = plan.columns[i];
     const Overview::Extent& e = found.extents[i];
     if (column.kind == ColumnKind::variable || !(e.least <= e.most)) continue;
+    if (column.key == settled) continue;  // yes or no, as the outcomes above count it
     table.rows.push_back({shortened(column.name, 43), quantity(e.least, column.unit), std::to_string(e.least_at),
                           quantity(e.most, column.unit), std::to_string(e.most_at)});
   }

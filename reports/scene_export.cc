@@ -216,8 +216,9 @@ std::map<std::string, Coded> coded(const PreparedScene& p, const SentSignals& se
                                 .minimum = limits.min_voltage,
                                 .maximum = limits.max_voltage});
   }
-  require_field(!all.empty(), "format", "codes",
-                [] { return "no driver takes samples: give [driver.NAME] a sample_rate and bits"; });
+  require_field(!all.empty(), "format", "codes", [] {
+    return "no driver takes samples: give [driver.NAME] a sample_rate and bits, or use --sample-rate and --bits";
+  });
   return all;
 }
 

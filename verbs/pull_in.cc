@@ -105,7 +105,7 @@ Outcome shown(PullInsRecord found) {
 struct PullInRequest : Usual {
   static constexpr auto name = "pull-in",
                         about = "compute static pull-in, dynamic pull-in and release voltage of every electrode",
-                        python = "pull_in", leaves = "folder for sweep.csv and sweep.svg", leaving = "sweep";
+                        python = "pull_in", leaves = "folder for sweep.csv and sweep.svg; requires --sweep", leaving = "sweep";
   static constexpr auto remarks =
       "The stable path says whether one drive alone can carry the switch to its contact through stable equilibria, without a\n"
       "jump, and for what share of 256 devices of [spread]. If so, softland optimize approaches the contact slowly.\n"

@@ -35,7 +35,7 @@ struct TuneVerb : Usual, TuneRequest {
       "[driver.*]. The last shot uses the final waveform; exit status 4: it bounced. docs/tune.md describes how to practise,\n"
       "what a command reads and writes, and a command for instruments.\n"
       "Examples:\n  softland tune scenes/mem-gold.toml --device \"softland device scenes/mem-gold.toml --seed 7\"\n"
-      "  softland tune my.toml --device \"python3 scpi_device.py --generator 192.168.1.10 --oscilloscope 192.168.1.11\"\n"
+      "  softland tune my.toml --device \"python3 examples/scpi_device.py --generator 192.168.1.10 --oscilloscope 192.168.1.11\"\n"
       "  softland tune my.toml --by-hand --closings 12 --out device-17\n"
       "  softland tune my.toml --by-hand --format keysight-arb --sample-rate \"25 MHz\" --bits 14 --amplifier 20\n"
       "  softland tune my.toml --by-hand --contact threshold=\"1.5 V\" --contact closed=below --contact column=CH2\n"

@@ -48,10 +48,11 @@ std::optional<SummitsAtHold> summits_at_hold(const Switch& model, const ClosedEq
 }
 
 std::string summits_prose(const SummitsAtHold& summits) {
-  return fmt::format("{} of {} {}{}", engineering(summits.touching, "", 2), engineering(summits.all, "", 3), touch_at_hold,
-                     summits.touching < 1
-                         ? fmt::format("{}, so that the law, a mean over many of them, says little of one device", too_few)
-                         : "");
+  return fmt::format(
+      "{} of {} {}{}", engineering(summits.touching, "", 2), engineering(summits.all, "", 3), touch_at_hold,
+      summits.touching < 1
+          ? fmt::format("{}; the contact law is a mean over many summits, and may be wrong for one device", too_few)
+          : "");
 }
 
 std::string few_summits_warning(const Switch& model, const std::vector<Signal>& signals) {
