@@ -1,6 +1,6 @@
 # %% [markdown]
 # # A first closing
-# A gold cantilever that is simply switched on slams into its contact. How fast, and how often does it bounce?
+# A gold cantilever is closed by a plain voltage step. How fast does it hit its contact, and how often does it bounce?
 
 # %%
 import sys
@@ -25,7 +25,7 @@ print(f"highest rebound {closing.major_bounce_height * 1e9:.1f} nm")
 # %%
 run = closing.trajectory
 x, y = closing.shape([10e-6, 20e-6, float(closing.initial_contact_time)])
-print(f"{len(run)} knots; the tip is deflected by {1e6 * y[-1, -1]:.3f} um at first contact")
+print(f"{len(run)} points in time; the tip is deflected by {1e6 * y[-1, -1]:.3f} um at first contact")
 if "ipykernel" in sys.modules:
     closing.plot()
 
@@ -35,4 +35,4 @@ if "ipykernel" in sys.modules:
 # %%
 scene["structure.thickness"] = "2.2 um"
 thicker = scene.simulate()
-print(f"impact velocity {closing.impact_velocity * 1e3:.1f} mm/s, of the thicker one {thicker.impact_velocity * 1e3:.1f} mm/s")
+print(f"impact velocity {closing.impact_velocity * 1e3:.1f} mm/s, of the thicker beam {thicker.impact_velocity * 1e3:.1f} mm/s")

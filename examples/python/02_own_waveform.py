@@ -41,11 +41,12 @@ swell = softland.OwnWaveform(
         "back_s": ("1 us", "50 us", "10 us"),
     },
 )
-as_it_stands = scene.simulate(errors=False, waveforms={"main": swell})
-print(f"as it stands {as_it_stands.initial_contact_time * 1e6:.2f} us, {as_it_stands.impact_velocity * 1e3:.2f} mm/s")
+given = scene.simulate(errors=False, waveforms={"main": swell})
+print(f"as given {given.initial_contact_time * 1e6:.2f} us, {given.impact_velocity * 1e3:.2f} mm/s")
 
 # %%
 found = scene.optimize(robust="none", own_waveforms=[swell], waveform="swell", budget=1500)
 best = swell.at([found.best.parameters[f"main.{name}"] for name in ("high_V", "low_V", "up_s", "down_s", "back_s")])
-print(best.csv("150 us").splitlines()[0])
+table = best.csv("150 us").splitlines()
+print(f"{len(table) - 1} rows for a generator:", *table[:4], sep="\n")
 print(f"searched {found.metrics.initial_contact_time * 1e6:.2f} us, {found.metrics.impact_velocity * 1e3:.2f} mm/s")

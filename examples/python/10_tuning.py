@@ -31,6 +31,8 @@ found = scene.tune(fire, callback=print)
 
 # %%
 for quantity in found.belief.quantities:
-    print(f"{quantity.name:24s} {quantity.prior_mean:5.3g} ± {quantity.prior_deviation:.2g} before, {quantity['mean']:8.3g} ± {quantity.deviation:.2g} now")
+    unit = quantity.unit or "of the nominal value"
+    before, now = f"{quantity.prior_mean:.3g} ± {quantity.prior_deviation:.2g}", f"{quantity['mean']:.3g} ± {quantity.deviation:.2g}"
+    print(f"{quantity.name:24s} {before} before, {now} now, {unit}")
 step = scene.simulate(errors=False)
-print(f"the last {found.bounce_free_in_a_row} of {len(found.closings)} closings are without a bounce; the nominal design bounces {step.bounce_count:.0f} times under the plain step")
+print(f"the last {found.bounce_free_in_a_row} of {len(found.closings)} closings are bounce-free; the nominal design bounces {step.bounce_count:.0f} times under the plain step")
