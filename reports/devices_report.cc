@@ -400,7 +400,7 @@ ReportSection internal::choices_section(const DevicesFindings& d) {
     words += (more.empty() ? "" : " ") + more;
   section.parts.emplace_back(Paragraph{std::move(words)});
   if (!d.next_command.empty()) {
-    section.parts.emplace_back(Paragraph{export_heading(d) + ":"});
+    section.parts.emplace_back(SubHeading{export_heading(d)});
     section.parts.emplace_back(ReportList{{d.next_command}});
   }
   return section;

@@ -155,13 +155,17 @@ std::string text_of(const MeasurementsRecord& study, std::size_t most) {
        .sections = {
            {.id = "measured",
             .heading = "Value of the measurements",
-            .parts = {figures_table(study), predictions_table("Measured (best first)", shown, study.drives_piezo),
-                      predictions_table("For comparison", study.references, study.drives_piezo),
-                      Paragraph{fmt::format(
-                          "The errors of voltage and time are root mean squares against the best factors. In brackets: 95 % "
-                          "confidence. The ranking is by the 95th percentile of the score of `bounce`: half the largest impact "
-                          "velocity plus half the highest rebound, both relative to the plain step. Seed {}.{}",
-                          study.seed, others)}}}}});
+            .parts = {
+                figures_table(study), predictions_table("Measured (best first)", shown, study.drives_piezo),
+                predictions_table("For comparison", study.references, study.drives_piezo),
+                Paragraph{"For comparison: with `nothing`, all devices have the waveform of the scene; `all of them` are all "
+                          "figures of the first table; in `own units`, voltages scale with Vdp and times with the period of "
+                          "the first mode, as in softland export --measured."},
+                Paragraph{fmt::format(
+                    "The errors of voltage and time are root mean squares against the best factors. In brackets: 95 % "
+                    "confidence. The ranking is by the 95th percentile of the score of `bounce`: half the largest impact "
+                    "velocity plus half the highest rebound, both relative to the plain step. Seed {}.{}",
+                    study.seed, others)}}}}});
 }
 
 }  // namespace softland
