@@ -132,6 +132,7 @@ std::string electrode_prose(const std::string& name, const ElectrodeRecord& elec
       std::isfinite(found.neutral) ? fmt::format("  charge           {}\n", charge_prose(found)) : std::string();
   if (!has_contact) return text + of_charge;
   text += fmt::format("  release          {}{}\n", volts(found.release), shift_clause(found.by_modes, &VoltagesByModes::release));
+  if (const std::string words = brief_contact_prose(found); !words.empty()) text += fmt::format("                   {}\n", words);
   if (std::isfinite(found.pulled_through))
     text += fmt::format("  collapse         {}: from there on a closed switch collapses onto the electrode{}\n",
                         volts(found.pulled_through), shift_clause(found.by_modes, &VoltagesByModes::pulled_through));
@@ -243,6 +244,13 @@ std::string dynamic_prose(const PullInRecord& found) {
               ? " (equal to the static one: no lower step moves the beam, and from there on its rest position is unstable)"
           : found.dynamic_kind == "overdamped" ? " (overdamped: equals the static one)"
                                                : "");
+}
+
+std::string brief_contact_prose(const PullInRecord& found) {
+  const std::string low = volts(found.dynamic_pull_in), high = volts(found.release);
+  // Voltages that differ by less than the digits shown leave no such step.
+  if (!(found.dynamic_pull_in < found.release) || low == high) return {};
+  return fmt::format("a step to between {} and {}, below the release voltage, touches and does not stay closed", low, high);
 }
 
 bool sticks_by_charge(const PullInRecord& found) {

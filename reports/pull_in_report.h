@@ -51,6 +51,10 @@ struct ElectrodeRecord {
 /// if no lower voltage step moves the beam.
 [[nodiscard]] std::string dynamic_prose(const PullInRecord& found);
 
+/// Says between which voltages a step touches the contact and does not keep the switch closed: from the dynamic pull-in voltage
+/// up to a higher release voltage. Empty if the release voltage is not higher.
+[[nodiscard]] std::string brief_contact_prose(const PullInRecord& found);
+
 /// Returns true if the charge of the dielectric keeps a closed switch closed at 0 V.
 [[nodiscard]] bool sticks_by_charge(const PullInRecord& found);
 /// Describes how the charge of the dielectric shifts the pull-in and release voltages of both polarities; empty without charge.

@@ -283,6 +283,7 @@ class SceneCheck {
                                   : fmt::format("Vsp {}, Vdp {}", volts(v.static_pull_in), dynamic_prose(v)) + roughly) +
                                  (p_.model.has_contact() ? ", release " + volts(v.release) : "") +
                                  (bias.empty() ? "" : ", under " + bias));
+    if (const std::string brief = brief_contact_prose(v); !brief.empty()) add("", brief);
     if (const std::string charge = charge_prose(v); !charge.empty()) add("", "its charge " + charge);
     if (sticks_by_charge(v))
       record_.warnings.push_back(

@@ -50,5 +50,22 @@ TEST(PullInReport, SaysAtWhichVoltageASweepCollapses) {
   EXPECT_THAT(sweep_svg(whole), Not(HasSubstr("collapses")));
 }
 
+TEST(PullInReport, SaysWhichStepsTouchAndDoNotStayClosed) {
+  const std::string words = "a step to between 14.200\u00a0V and 14.900\u00a0V, below the release voltage, touches and does not";
+  PullInsRecord record = swept({});
+  PullInRecord& volts = record.electrodes["main"].volts;
+  record.origin.scene["contact"] = nlohmann::json::object();
+  volts.dynamic_pull_in = 14.2;
+  EXPECT_THAT(brief_contact_prose(volts), HasSubstr(words));
+  EXPECT_THAT(text_of(record), HasSubstr(words));
+  volts.dynamic_pull_in = 14.9 * (1 - 1e-7);
+  EXPECT_EQ(brief_contact_prose(volts), "") << "equal digits";
+  volts.dynamic_pull_in = 15.2;
+  EXPECT_EQ(brief_contact_prose(volts), "");
+  EXPECT_THAT(text_of(record), Not(HasSubstr("does not stay closed")));
+  volts.dynamic_pull_in = Metrics::unset;
+  EXPECT_EQ(brief_contact_prose(volts), "") << "without a dynamic pull-in voltage";
+}
+
 }  // namespace
 }  // namespace softland::pull_in_report_test
