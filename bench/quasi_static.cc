@@ -16,7 +16,7 @@
 #include "base/executor.h"
 #include "config/assumed_spread.h"
 #include "config/condition.h"
-#include "studies/search/paced_search.h"
+#include "studies/search/family_tournament.h"
 #include "studies/search/robust_search.h"
 #include "studies/search/search_space.h"
 

@@ -9,7 +9,7 @@
 #include "base/progress.h"
 #include "reports/closing_record.h"
 #include "reports/robustness_report.h"
-#include "studies/search/found_search.h"
+#include "studies/search/search_request.h"
 
 namespace softland {
 

@@ -49,14 +49,14 @@
 #include "studies/exploration/front_search.h"        // explore --pareto
 #include "studies/inverse/practice_device.h"         // device
 #include "studies/inverse/tuner.h"                   // tune
-#include "studies/search/found_search.h"         // optimize, whatever its options: run(planned(completed(words, scene), scene))
-#include "studies/search/limit.h"                // limit
-#include "studies/search/opening.h"              // release
-#include "studies/search/optimize.h"             // optimize --robust none
-#include "studies/search/robust_optimize.h"      // optimize --robust MEASURE
-#include "studies/search/robust_search_study.h"  // optimize: for the drawing, and for devices that differ
-#include "studies/search/seed_study.h"           // optimize --seeds
-#include "studies/search/stored_search.h"        // optimize --resume: a search as its store keeps it
+#include "studies/search/limit.h"                    // limit
+#include "studies/search/opening.h"                  // release
+#include "studies/search/optimize.h"                 // optimize --robust none
+#include "studies/search/robust_optimize.h"          // optimize --robust MEASURE
+#include "studies/search/robust_search_study.h"      // optimize: for the drawing, and for devices that differ
+#include "studies/search/search_request.h"  // optimize, whatever its options: run(planned(completed(words, scene), scene))
+#include "studies/search/seed_study.h"      // optimize --seeds
+#include "studies/search/stored_search.h"   // optimize --resume: a search as its store keeps it
 
 // The doors for what softland does not have.
 #include "model/contact/own.h"

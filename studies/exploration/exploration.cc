@@ -18,7 +18,7 @@
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/certify.h"
 #include "studies/devices/robustness.h"
-#include "studies/search/figure_columns.h"
+#include "studies/search/evaluation_store.h"
 #include "studies/search/optimize.h"
 #include "studies/search/search_request.h"
 #include "studies/search/search_space.h"

@@ -32,7 +32,7 @@
 #include "config/plan.h"
 #include "studies/devices/row_status.h"
 #include "studies/exploration/pull_in_memory.h"
-#include "studies/search/figure_columns.h"
+#include "studies/search/evaluation_store.h"
 
 namespace softland {
 

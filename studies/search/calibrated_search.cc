@@ -7,8 +7,8 @@
 
 #include "base/executor.h"
 #include "base/require.h"
+#include "studies/search/robust_cost.h"
 #include "studies/search/robust_search.h"
-#include "studies/search/step_comparison.h"
 
 namespace softland {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "base/engineering.h"
 #include "base/require.h"
-#include "studies/search/brake_pulses.h"
+#include "studies/search/opening.h"
 #include "studies/search/optimize.h"
 #include "studies/search/search_budget.h"
 #include "studies/search/search_setting.h"

@@ -1,7 +1,7 @@
 // The search for the closing and the opening waveform of a switch that is cycled at a rate. Both waveforms are searched
 // together, since each begins with the residual vibration of the other.
 //
-// A waveform for the closing alone is found first (optimize.h). Then pulses are found that brake the opening (brake_pulses.h),
+// A waveform for the closing alone is found first (optimize.h). Then pulses are found that brake the opening (opening.h),
 // so that the contact point hardly swings in the last third of the open part of a cycle. Then both waveforms are improved
 // together. A pair of waveforms is simulated for the first few cycles from rest, and costs as much as the worst of their
 // closings (objectives/cost.h), scored until the command to open. A pair that does not close, or is closed at the end of a

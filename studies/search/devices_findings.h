@@ -4,17 +4,22 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/progress.h"
 #include "objectives/figure_values.h"
 #include "studies/devices/hold_window.h"
 #include "studies/search/robust_optimize.h"
 
 namespace softland {
+
+class RobustSearch;         // robust_search.h
+struct RobustSearchResult;  // robust_search_study.h
 
 // Names of rows in the table of results. A row shows how one waveform performs on varied devices. The waveforms are the plain
 // step, those searched for the nominal design and for varied devices, and the best one with the electrode's step at t = 0.
@@ -137,5 +142,14 @@ struct DevicesFindings {
   /// Returns the row of results with this name; null if no row has this name.
   [[nodiscard]] const Row* row(std::string_view name) const;
 };
+
+/// Finds the Pareto front of the candidate waveforms in time of first contact and impact velocity, and evaluates its candidates
+/// on the fresh devices (new to the search).
+void judge_front(RobustSearchResult& result, RobustSearch& search, const Progress& progress);
+/// Computes the contact gaps of some devices over time, under the plain step and the best waveform, until the contact force is
+/// steady.
+void draw_courses(RobustSearchResult& result, const RobustnessOptions& judging, const Progress& progress);
+/// Copies the results of the search to the findings, except those that were added during the final evaluation.
+void complete_findings(RobustSearchResult& result, RobustSearch& search, std::uint64_t seed);
 
 }  // namespace softland

@@ -1,19 +1,35 @@
 // The evaluations of a search in a database file. A continued search does not simulate the stored evaluations again.
 #pragma once
 
+#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <map>
 #include <mutex>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "objectives/figures.h"
 #include "store/study_store.h"
 #include "studies/search/evaluation_memory.h"
 
 namespace softland {
+
+/// A column of numbers in a table: a figure of merit or a searched parameter.
+struct PointFigure {
+  std::string quantity;  ///< key of the figure or parameter: "impact_velocity"
+  std::string name;      ///< displayed name of the figure or parameter: "Impact velocity"
+  std::string unit;      ///< SI unit of the figure or parameter; empty for a count, a share, and true or false (1 or 0)
+};
+
+/// Returns the column of a searched parameter: "main.level_1_V" gives "main.level_1" in V.
+[[nodiscard]] PointFigure parameter_figure(const std::string& name);
+/// Returns the column of a figure of merit, with the prefix `before` for `quantity` and the suffix `words` for `name`.
+[[nodiscard]] PointFigure figure_column(const Figure& figure, const std::string& before = {}, const std::string& words = {});
+/// Returns a value as a store keeps it: one that is not finite becomes Metrics::unset.
+[[nodiscard]] inline double stored_value(double value) { return std::isfinite(value) ? value : Metrics::unset; }
 
 /// Name of the database file in the folder of a search.
 inline constexpr const char* evaluations_file = "evaluations.sqlite";

@@ -15,12 +15,10 @@
 #include "studies/closing/plain_step.h"
 #include "studies/search/evaluation_log.h"
 #include "studies/search/family_search.h"
-#include "studies/search/joint_rest_to_rest_starts.h"
 #include "studies/search/limit.h"
-#include "studies/search/modes_of_search.h"
 #include "studies/search/search_budget.h"
 #include "studies/search/search_setting.h"
-#include "studies/search/search_work.h"
+#include "studies/search/searched_families.h"
 #include "studies/search/tournament.h"
 #include "studies/search/verification.h"
 

@@ -67,7 +67,7 @@ struct OptimizeOptions {
   /// Number of further evaluations near the best points, if no closing without a significant rebound was found.
   long more_evaluations = 0;
   /// true: max_evaluations is meant for closings of average computing time; the search makes fewer evaluations if its closings
-  /// are slow (search_work.h).
+  /// are slow (search_budget.h).
   bool counts_work = false;
   /// true: the search begins exactly as with half the budget, and continues from that result, so that twice the budget is never
   /// worse. Use this to compare budgets; an undivided search finds more. The budget must be in evaluations, not in seconds.

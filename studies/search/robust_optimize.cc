@@ -12,7 +12,7 @@
 #include "base/require.h"
 #include "studies/closing/plain_step.h"
 #include "studies/search/evaluation_log.h"
-#include "studies/search/search_work.h"
+#include "studies/search/search_budget.h"
 #include "studies/search/tournament.h"
 
 namespace softland {

@@ -12,10 +12,10 @@
 #include "config/assumed_spread.h"
 #include "sampling/statistics.h"
 #include "studies/search/family_search.h"
-#include "studies/search/modes_of_search.h"
-#include "studies/search/search_work.h"
-#include "studies/search/step_comparison.h"
-#include "studies/search/usual_room.h"
+#include "studies/search/robust_cost.h"
+#include "studies/search/search_budget.h"
+#include "studies/search/search_setting.h"
+#include "studies/search/verification.h"
 
 namespace softland {
 namespace {

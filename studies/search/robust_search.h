@@ -17,7 +17,6 @@
 #include "studies/search/devices_findings.h"
 #include "studies/search/family_tournament.h"
 #include "studies/search/optimize.h"
-#include "studies/search/paced_search.h"
 #include "studies/search/robust_optimize.h"
 #include "studies/search/search_budget.h"
 
@@ -49,7 +48,7 @@ struct RobustSearchOptions {
   bool is_of_before = false;
   long closings = tournament_closings;  ///< total number of closings of the tournament of waveform families
   bool are_a_budget = false;            ///< true: `closings` is an upper limit, even if many devices are bounce-free
-  bool counts_work = false;             ///< true: the tournament makes fewer closings if they are slow (search_work.h)
+  bool counts_work = false;             ///< true: the tournament makes fewer closings if they are slow (search_budget.h)
   /// Function that is called with every new best candidate waveform; from any thread, one call at a time.
   std::function<void(const Leading&)> on_leading = {};
 };

@@ -11,8 +11,8 @@
 #include "base/executor.h"
 #include "base/require.h"
 #include "studies/closing/plain_step.h"
-#include "studies/search/search_findings.h"
-#include "studies/search/step_comparison.h"
+#include "studies/search/devices_findings.h"
+#include "studies/search/robust_cost.h"
 
 namespace softland {
 namespace {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "config/scene.h"
@@ -96,5 +97,23 @@ inline constexpr std::uint64_t most_seeds = 100'000;
 /// InvalidRequest with field, value and rule.
 [[nodiscard]] PlannedSearch planned(const SearchRequest& request, SceneFile scene, const std::string& families = {},
                                     const OwnParts& own = {});
+
+/// The result of a search: on the nominal device, over devices by one measure of risk, or over devices by a tournament of
+/// waveform families.
+struct FoundSearch {
+  std::variant<OptimizeResult, RobustResult, RobustSearchResult> result;
+
+  /// Returns the found waveform, with the closing of the nominal device.
+  [[nodiscard]] const OptimizeResult& best() const;
+  [[nodiscard]] OptimizeResult& best();
+  [[nodiscard]] bool interrupted() const { return best().search.termination == Termination::interrupted; }
+  /// True if the found waveform is better than the plain step: on the varied devices if the search has simulated any, else on
+  /// the nominal device.
+  [[nodiscard]] bool is_success() const;
+};
+
+/// Runs the search with the first of its seeds. A search over varied devices of a scene without [spread] uses the spread of
+/// assume_spread(). Throws the exceptions of optimize().
+[[nodiscard]] FoundSearch run(PlannedSearch& search);
 
 }  // namespace softland

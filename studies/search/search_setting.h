@@ -144,4 +144,10 @@ void require_asked(const Condition& condition, const AskedFigures& asked);
 /// file.
 [[nodiscard]] PreparedScene read_back(const SceneFile& file, const std::string& name, const PreparedScene& given);
 
+/// Returns the settings for a first tournament: the limits of the searched electrodes are reduced to their default
+/// (default_limit() in config/scene.h). `names` are the waveform families of the settings. The result is empty if the scene's
+/// limits are not wider, or if the hold level exceeds the default limit.
+[[nodiscard]] std::vector<SearchSetting> within_usual_room(const std::vector<SearchSetting>& settings, Actuator actuator,
+                                                           const std::vector<std::string>& names);
+
 }  // namespace softland

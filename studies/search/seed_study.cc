@@ -12,7 +12,7 @@
 #include "base/executor.h"
 #include "base/progress.h"
 #include "studies/devices/row_status.h"
-#include "studies/search/figure_columns.h"
+#include "studies/search/evaluation_store.h"
 #include "studies/search/robust_optimize.h"
 
 namespace softland {

@@ -1,7 +1,5 @@
 // Landings that are bouncy with more modes than the scene has: gentle edges, the worst of several beams, and further
 // simulations of a winner.
-#include "studies/search/modes_of_search.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "studies/closing/checking_runs.h"
 #include "studies/search/limit.h"
 #include "studies/search/optimize.h"
+#include "studies/search/verification.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "studies/search/found_search.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {

@@ -1,6 +1,4 @@
 // Budgets of searches by computing work.
-#include "studies/search/search_work.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <string>
 
 #include "studies/search/robust_search_study.h"
+#include "studies/search/search_budget.h"
 #include "studies/search/search_request.h"
 #include "tests/studies/scenes.h"
 

@@ -1,12 +1,12 @@
 // Tests if a drive is worse than the plain step, on synthetic outcomes.
-#include "studies/search/step_comparison.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string_view>
 #include <vector>
+
+#include "studies/search/robust_cost.h"
 
 namespace softland {
 namespace {

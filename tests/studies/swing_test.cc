@@ -13,7 +13,7 @@
 #include "scenes.h"
 #include "studies/closing/prepared.h"
 #include "studies/search/bang_bang.h"
-#include "studies/search/joint_rest_to_rest_starts.h"
+#include "studies/search/searched_families.h"
 
 namespace softland {
 namespace {
