@@ -87,7 +87,7 @@ def main():
             "`bench/run_race.py PROGRAM FOLDER`: `softland optimize SCENE --actuator ACTUATOR --seed N` with the defaults, 2000 fresh devices.",
             "Figures are those that 95 % of the devices stay below. Times are of one search on two cores.", ""]
     text += ["## Winners", ""] + table(["switch", "waveform", "seed"] + figure_heads + ["processor s", "wall s"], figures)
-    text += ["## For the drawing, and in measured units", ""] + table(["switch", "waveform", "seed"] + figure_heads, measured)
+    text += ["## On the nominal design, and in measured units", ""] + table(["switch", "waveform", "seed"] + figure_heads, measured)
     text += ["## Which candidate won where", ""] + table(["candidate", "won"], [[w, "; ".join(places)] for w, places in sorted(winners.items())])
     print("\n".join(text))
 

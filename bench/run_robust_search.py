@@ -67,7 +67,7 @@ def row(name, drive, *more):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     chosen = sys.argv[2:] or list(SEARCHES)
-    print(f"""# Searches over devices that differ
+    print(f"""# Searches over varied devices
 
 `softland optimize ... --robust ...` on the shipped scenes with their own `[spread]` (2 % of thickness, 2 % of both gaps by one factor,
 3 % of the modulus, one standard deviation, normal; see the scenes for the others), each winner judged on 2000 devices that no search has seen, over the scene's whole

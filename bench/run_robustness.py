@@ -36,7 +36,7 @@ def quantiles(drive, key, unit):
 
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
-    print(f"""# Winners on devices that differ
+    print(f"""# Winners on varied devices
 
 `softland optimize SCENE --actuator ... --seed N`, then `softland robustness SCENE WINNER ... --samples {DEVICES}`: the same devices
 for all, drawn from the scene's `[spread]` (2 % of thickness, 2 % of both gaps by one factor, 3 % of the modulus; plates 6 % of
@@ -46,7 +46,7 @@ device. Median / 95 % quantile; v is the largest impact velocity of all touches.
 - made by `bench/run_robustness.py BUILD/apps/softland > results/robustness.md`, {datetime.date.today()}, revision {revision()}
 - machine: {machine()}
 
-A waveform in fixed volts that lands the drawing without a rebound does so on few devices. A dash: as many devices do not close, or
+A waveform in fixed volts that closes the nominal design without a rebound does so on few devices. A dash: as many devices do not close, or
 do not settle in the window.
 """)
     for scene, actuator in TASKS:

@@ -671,7 +671,7 @@ TEST(Robustness, LeavesTheWorstDevicesOfTheBox) {
 }
 
 // The bars that searches over devices were built to reach: 95th percentiles of impact velocity, rebound and first touch, or the
-// yield, of devices that the search has not seen (results/tournament.md). A slow approach touches late by design: its bar is the
+// yield, of devices that the search has not seen (results/race.md). A slow approach touches late by design: its bar is the
 // time from which the plain step carries a steady force.
 struct Bar {
   const char *scene, *actuator;
