@@ -75,7 +75,8 @@ def kinds(bench):
     """Prints the closings per second of each kind of scene, one at a time and in lanes."""
     print(f"""## Kinds of scenes
 
-Closings of 200 devices per second and core, by one at a time and in lanes: medians of five rounds that take turns, so that their ratio holds where something else runs on the machine too.
+The table has closings of 200 devices per second and core, one at a time and in lanes. They are medians of five rounds that take turns, so that their ratio
+holds beside other work on the machine.
 
 - made by `bench/run_lanes.py BUILD --kinds`, {datetime.date.today()}, revision {revision()}
 - machine: {machine()}
@@ -102,10 +103,10 @@ def main():
     one = statistics.median(odeint)
     print(f"""# Closings of devices in lanes
 
-Devices of the spread of `scenes/mem-gold.toml`, plain step to 1.25 Vdp, the window that a search scores. A closing is that of one device on one core, building the
-device and sampling included; its error is that of B_H against a run at tolerance 1e-10 and quadrature of accuracy 1e-8, of 500 devices. SciPy is LSODA through odeint at
-rtol 1e-6, the loosest power of ten that delivers B_H to 1e-4: {prefixed(one, "s")} for the same closing of the nominal device. Medians of {ROUNDS} rounds that take the programs in turn;
-in brackets the range over the rounds.
+The devices are of the process variation of `scenes/mem-gold.toml`, under a plain step to 1.25 Vdp, in the window that a search scores. A closing is that of one
+device on one core, with building the device and sampling. Its error is that of B_H against a run at tolerance 1e-10 and quadrature of accuracy 1e-8, of 500
+devices. SciPy is LSODA through odeint at rtol 1e-6, the loosest power of ten that delivers B_H to 1e-4: it takes {prefixed(one, "s")} for the same closing of the nominal
+device. The table has medians of {ROUNDS} rounds that take the programs in turn, with the range over the rounds in brackets.
 
 - made by `bench/run_lanes.py BUILD > results/lanes.md`, {datetime.date.today()}, revision {revision()}
 - machine: {machine()}

@@ -69,9 +69,9 @@ def main():
     chosen = sys.argv[2:] or list(SEARCHES)
     print(f"""# Searches over varied devices
 
-`softland optimize ... --robust ...` on the shipped scenes with their own `[spread]` (2 % of thickness, 2 % of both gaps by one factor,
-3 % of the modulus, one standard deviation, normal; see the scenes for the others), each winner judged on 2000 devices that no search has seen, over the scene's whole
-window. 95 % of the devices are below the given values; in brackets 95 % confidence. v is the largest impact velocity of all touches.
+`softland optimize ... --robust ...` runs on the shipped scenes with their own `[spread]`: 2 % of thickness, 2 % of both gaps by one factor, 3 % of the modulus,
+one standard deviation, normal; see the scenes for the others. Each winner is judged on 2000 devices that no search has seen, over the scene's whole window.
+Values are 95th percentiles, with the 95 % confidence interval in brackets; v is the largest impact velocity of all touches.
 
 - made by `bench/run_robust_search.py BUILD/apps/softland > results/robust-search.md`, {datetime.date.today()}, revision {revision()}
 - machine: {machine()}

@@ -38,16 +38,16 @@ def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     print(f"""# Winners on varied devices
 
-`softland optimize SCENE --actuator ... --seed N`, then `softland robustness SCENE WINNER ... --samples {DEVICES}`: the same devices
-for all, drawn from the scene's `[spread]` (2 % of thickness, 2 % of both gaps by one factor, 3 % of the modulus; plates 6 % of
-the stiffness and 2 % of the mass instead; one standard deviation, normal), with the volts that the search found for the nominal
-device. Median / 95 % quantile; v is the largest impact velocity of all touches.
+The commands are `softland optimize SCENE --actuator ... --seed N`, then `softland robustness SCENE WINNER ... --samples {DEVICES}`. All
+waveforms get the same devices, drawn from the scene's `[spread]` (2 % of thickness, 2 % of both gaps by one factor, 3 % of the
+modulus; plates 6 % of the stiffness and 2 % of the mass instead; one standard deviation, normal). The voltages are those that the
+search found for the nominal device. Cells have the median / 95th percentile; v is the largest impact velocity of all touches.
 
 - made by `bench/run_robustness.py BUILD/apps/softland > results/robustness.md`, {datetime.date.today()}, revision {revision()}
 - machine: {machine()}
 
-A waveform in fixed volts that closes the nominal design without a rebound does so on few devices. A dash: as many devices do not close, or
-do not settle in the window.
+A waveform in fixed volts that lands the nominal design without a rebound does so on few devices. A dash means that as many devices
+do not close, or do not settle in the window.
 """)
     for scene, actuator in TASKS:
         with tempfile.TemporaryDirectory() as folder:
