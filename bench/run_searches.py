@@ -75,9 +75,9 @@ def main():
     program = sys.argv[1]
     print(f"""# Searches over seeds and variants
 
-`softland optimize SCENE --target bounce --actuator ... --waveform pulse --seed N [--set VARIANT]` with the default budgets. A significant
-rebound is one above 1 nm; "found" is what the search reports, "peer" what `bench/peers/closing_scipy.py` (SciPy's LSODA at rtol 1e-9, its
-own equations and modes, window 600 us) says of the exported `best.csv`.
+The searches are `softland optimize SCENE --target bounce --actuator ... --waveform pulse --seed N [--set VARIANT]` with the default budgets. A significant
+rebound is one above 1 nm. "Found" is what the search reports. "Peer" is what `bench/peers/closing_scipy.py` (SciPy's LSODA at rtol 1e-9, its own equations and
+modes, window 600 us) gives for the exported `best.csv`.
 
 - made by `bench/run_searches.py BUILD/apps/softland > results/searches.md`, {datetime.date.today().isoformat()}, revision {revision()}
 - machine: {machine()}

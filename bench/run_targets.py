@@ -83,8 +83,8 @@ def main():
     options += [f"--searches {given.searches}"] * (searches != SEARCHES)
     print(f"""# Every target against every other
 
-`softland optimize SCENE --target T --actuator A --seed N --optimizer {given.optimizer}` with the default budgets. The last column names the other targets whose winner,
-on the same scene with the same seed, is better in this target's own figure by more than {TOLERATED:.0%}, or has no significant rebound where this one has.
+The searches are `softland optimize SCENE --target T --actuator A --seed N --optimizer {given.optimizer}` with the default budgets. The last column names the other targets
+whose winner, on the same scene with the same seed, is better in this target's own figure by more than {TOLERATED:.0%}, or has no significant rebound where this one has.
 
 - made by `bench/run_targets.py {" ".join(["BUILD/apps/softland"] + options)} > results/targets.md`, {datetime.date.today().isoformat()}, revision {revision()}
 - machine: {machine()}
