@@ -454,6 +454,7 @@ ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& gu
   check(problem, guess);
   ControlledCourse result = guess;
   result.converged = result.interrupted = false;
+  result.iterations = 0;
   const auto stopped = [&] { return problem.stop != nullptr && *problem.stop; };
   const auto turn = internal::ipopt_turn(stopped);
   if (!turn) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "document/chart.h"
+#include "document/csv_cell.h"
 #include "document/document.h"
 #include "document/quantity.h"
 #include "document/svg.h"
@@ -144,6 +145,32 @@ std::string quasi_static_prose(const LimitRecord& limit) {
       drive, quantity(touch_places, "m"), quantity(steady, "s"), quantity(speed, "m/s"));
 }
 
+// Names the optimum for which an attempt searched.
+std::string words_of(const LimitAttempt& attempt) {
+  const LeastTime& own = attempt.found;
+  std::string words = attempt.goal == LimitGoal::rest ? "every mode at rest" : "touch at up to " + quantity(own.permitted, "m/s");
+  if (attempt.goal == LimitGoal::over_peak) words += " with up to " + quantity(own.peak, "V", 4);
+  return words + (own.from_start ? ", from the waveform of --start" : "");
+}
+
+// Adds how many optima were found, and a line for each search that failed. The tables say what the drives cannot reach.
+void add_attempts(ReportSection& section, const std::vector<LimitAttempt>& attempts) {
+  if (attempts.empty()) return;
+  long optima = 0, found = 0, iterations = 0;
+  ReportList failed;
+  for (const LimitAttempt& attempt : attempts) {
+    const LeastTime& own = attempt.found;
+    if (!own.from_start) ++optima;
+    if (attempt.accepted) ++found;
+    iterations += own.iterations;
+    if (own.status != Status::numerical_failure) continue;
+    failed.lines.push_back(fmt::format("Not found: {}: {} (stage: {}, {} iterations)", words_of(attempt), why_not(own),
+                                       name_of(search_stages, own.stage), own.iterations));
+  }
+  section.parts.emplace_back(Paragraph{fmt::format("{} of {} optima found, {} iterations of Ipopt.", found, optima, iterations)});
+  if (!failed.lines.empty()) section.parts.emplace_back(std::move(failed));
+}
+
 }  // namespace
 
 void members(internal::Archive& a, LeastTime& least) {
@@ -157,6 +184,14 @@ void members(internal::Archive& a, LeastTime& least) {
   a("simulated_time_s", least.simulated_time, "time of the first contact in a simulation");
   a("simulated_impact_velocity_m_s", least.simulated_velocity, "speed of the first contact in a simulation");
   a("distance_from_rest", least.distance, "largest difference of a mode from its closed equilibrium, in contact gaps");
+}
+
+void members(internal::Archive& a, LimitAttempt& attempt) {
+  a("goal", internal::Chosen{attempt.goal, limit_goals}, "what the least time is computed for");
+  a("accepted", attempt.accepted, "whether it found the optimum that is reported");
+  a("stage", internal::Chosen{attempt.found.stage, search_stages}, "part of the search that began last");
+  a("iterations", attempt.found.iterations, "iterations of Ipopt");
+  members(a, attempt.found);
 }
 
 void members(internal::Archive& a, LimitRecord::QuasiStatic& found) {
@@ -199,6 +234,7 @@ void members(internal::Archive& a, LimitRecord& limit) {
   a("landing", internal::OrNull{limit.landing}, "closing of the least time that lands");
   a("over_impact_velocity", limit.over_velocity, "least time over the permitted velocity");
   a("over_peak_voltage", limit.over_peak, "least time over the permitted voltage");
+  a("attempts", limit.attempts, "log: every search for a least time, in the order of the work");
   if (!a.has(limit.landed.has_value())) return;
   a.object(
       "curves",
@@ -228,6 +264,7 @@ LimitRecord record_of(const Limit& limit, const std::string& command) {
                      .landing = {},
                      .over_velocity = limit.over_velocity,
                      .over_peak = limit.over_peak,
+                     .attempts = limit.attempts,
                      .landed = {}};
   if (limit.approach)
     record.quasi_static = {limit.approach->drive, limit.approach->touch_places(), limit.step.steady_force_time,
@@ -267,6 +304,7 @@ std::string text_of(const LimitRecord& limit) {
   if (!limit.over_peak.empty())
     section.parts.emplace_back(
         list_table("voltage up to", limit.over_peak, [](const LeastTime& l) { return quantity(l.peak, "V", 4); }));
+  add_attempts(section, limit.attempts);
   const std::string model = model_of(limit);
   if (limit.touch.status == Status::done || limit.rest.status == Status::done)
     section.parts.emplace_back(
@@ -281,6 +319,23 @@ std::string text_of(const LimitRecord& limit) {
       {.headline = fmt::format("Least times in which {} can close the switch{}", drives_of(limit.actuator), peak),
        .doubt = limit.status == "interrupted" ? "Interrupted: the results are incomplete." : "",
        .sections = {std::move(section)}});
+}
+
+std::string attempts_csv(const LimitRecord& limit) {
+  using internal::csv_cell;
+  std::string text =
+      "goal,from_start,permitted_impact_velocity_m_s,peak_voltage_V,accepted,status,stage,message,iterations,least_time_s,"
+      "impact_velocity_m_s,simulated_time_s,simulated_impact_velocity_m_s,distance_from_rest\n";
+  for (const LimitAttempt& attempt : limit.attempts) {
+    const LeastTime& own = attempt.found;
+    text += fmt::format("{},{},{},{},{},{},{},{},{}", name_of(limit_goals, attempt.goal), own.from_start, csv_cell(own.permitted),
+                        csv_cell(own.peak), attempt.accepted, to_string(own.status), name_of(search_stages, own.stage),
+                        csv_cell(own.message), own.iterations);
+    for (const double value : {own.time, own.impact_velocity, own.simulated_time, own.simulated_velocity, own.distance})
+      text += "," + csv_cell(value);
+    text += "\n";
+  }
+  return text;
 }
 
 std::string svg_of(const LimitRecord& limit) {

@@ -1,5 +1,5 @@
 // The results of `softland limit`, the least closing time of any waveform: JSON with SI units in the names, a table for a
-// terminal, and a picture.
+// terminal, a log of the searches, and a picture.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -50,6 +50,7 @@ struct LimitRecord {
   std::vector<std::string> warnings;
   std::optional<Landing> landing;
   std::vector<LeastTime> over_velocity, over_peak;
+  std::vector<LimitAttempt> attempts;   ///< all searches for least times, in the order of the work
   std::optional<ClosingRecord> landed;  ///< simulated run of the closing with the least time; --json leaves it out
 };
 [[nodiscard]] LimitRecord record_of(const Limit& limit, const std::string& command);
@@ -59,6 +60,8 @@ void members(internal::Archive& a, LimitRecord& record);
 [[nodiscard]] nlohmann::json json_of(const LimitRecord& record);
 [[nodiscard]] LimitRecord read_limit(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const LimitRecord& record);
+/// Returns the log of the searches for least times, a row per attempt.
+[[nodiscard]] std::string attempts_csv(const LimitRecord& record);
 /// Draws gap and waveforms of the closing with the least time, and the least time against peak voltage and against permitted
 /// impact velocity, as far as they were computed.
 [[nodiscard]] std::string svg_of(const LimitRecord& record);

@@ -11,6 +11,7 @@
 
 #include "base/require.h"
 #include "document/chart.h"
+#include "document/csv_cell.h"
 #include "document/quantity.h"
 #include "document/svg.h"
 #include "document/text.h"
@@ -39,8 +40,6 @@ std::string dynamic_kind(const PreparedScene& p, std::size_t k, double staticall
   levels[k] = statically;
   return leaves_at_rest(p.model, bias_of(p.scene, k), levels) ? "unstable_rest" : "overdamped";
 }
-
-std::string csv_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
 
 std::string_view branch_name(const SweepPoint& p) { return p.is_up ? "up" : "down"; }
 
@@ -318,8 +317,8 @@ std::string text_of(const PullInsRecord& record) {
 std::string sweep_csv(const std::vector<SweepPoint>& points) {
   std::string text = "voltage_V,deflection_m,capacitance_F,branch,status\n";
   for (const SweepPoint& p : points)
-    text += fmt::format("{},{},{},{},{}\n", p.voltage, csv_cell(p.deflection), csv_cell(p.capacitance), branch_name(p),
-                        to_string(p.state));
+    text += fmt::format("{},{},{},{},{}\n", p.voltage, internal::csv_cell(p.deflection), internal::csv_cell(p.capacitance),
+                        branch_name(p), to_string(p.state));
   return text;
 }
 

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <utility>
+
+#include "document/csv_cell.h"
 
 namespace softland {
 
@@ -34,7 +35,7 @@ void SearchLog::write() {
   log += "\n";
   for (const auto& [index, e] : evaluations_) {
     log += fmt::format("{},{}", index, e.value);
-    for (const double x : columns_.row(e.problem, e.x)) log += std::isnan(x) ? "," : fmt::format(",{}", x);
+    for (const double x : columns_.row(e.problem, e.x)) log += "," + internal::csv_cell(x);
     log += "\n";
   }
   folder_.write("evaluations.csv", log);

@@ -17,7 +17,8 @@ namespace {
 Outcome shown(LimitRecord found) {
   const auto record = std::make_shared<const LimitRecord>(std::move(found));
   Outcome outcome{.json = without_curves(json_of(*record)), .text = text_of(*record)};
-  outcome.files = {{"limit.json", [record] { return json_text(json_of(*record), 1) + "\n"; }, "limit.json"}};
+  outcome.files = {{"limit.json", [record] { return json_text(json_of(*record), 1) + "\n"; }, "limit.json"},
+                   {"attempts.csv", [record] { return attempts_csv(*record); }, "attempts.csv (log of the searches)"}};
   if (record->landed || !record->landing)
     outcome.files.push_back({"limit.svg", [record] { return svg_of(*record); }, "limit.svg"});
   return outcome;
@@ -26,7 +27,9 @@ Outcome shown(LimitRecord found) {
 struct LimitRequest : Usual {
   static constexpr bool is_explorable = true;
   static constexpr auto name = "limit", about = "compute the least time in which a waveform can close the switch softly",
-                        python = "limit", leaves = "folder for limit.json, limit.svg and the landing as best.toml and best.csv";
+                        python = "limit",
+                        leaves =
+                            "folder for limit.json, limit.svg, attempts.csv (the log) and the landing as best.toml and best.csv";
   static constexpr auto remarks =
       "The least time is that of the best waveform of any shape within the limits of [driver.*], found by direct collocation.\n"
       "The optimum is a local one, for these voltage limits and this impact velocity in the model of the scene.\n"
@@ -36,7 +39,7 @@ struct LimitRequest : Usual {
       "Examples:\n  softland limit scenes/mem-gold.toml\n"
       "  softland limit scenes/mem-gold-pzt.toml --actuator both --impact-velocity \"1 mm/s\" --out limit\n"
       "  softland limit scenes/mem-gold-pzt.toml --actuator pzt --start softland-out --no-curves";
-  static std::vector<std::string> files() { return {"limit.json", "limit.svg", "best.toml", "best.csv"}; }
+  static std::vector<std::string> files() { return {"limit.json", "limit.svg", "attempts.csv", "best.toml", "best.csv"}; }
   static Outcome shown_again(const nlohmann::json& json) { return shown(read_limit(json)); }
 
   LimitOptions options;

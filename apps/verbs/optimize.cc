@@ -37,7 +37,7 @@
 #include "reports/robustness_prose.h"
 #include "reports/search_report.h"
 #include "reports/seeds_report.h"
-#include "studies/search/limit.h"
+#include "studies/search/least_time.h"
 #include "studies/search/robust_optimize.h"
 #include "studies/search/seed_study.h"
 #include "waveforms/export.h"

@@ -20,6 +20,7 @@
 #include "base/shortened.h"
 #include "base/split.h"
 #include "base/write_whole.h"
+#include "document/csv_cell.h"
 #include "document/quantity.h"
 #include "document/text.h"
 #include "store/study_store.h"
@@ -38,18 +39,10 @@ struct Column {
   std::function<std::string(const StoredRow&)> csv, shown;
 };
 
-// Quotes a text that a reader of CSV (RFC 4180) would otherwise split or change.
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 Column text_column(const char* key, const std::function<std::string(const StoredRow&)>& text) {
   return {.key = key,
           .unit = "",
-          .csv = [text](const StoredRow& row) { return csv_cell(text(row)); },
+          .csv = [text](const StoredRow& row) { return internal::csv_cell(text(row)); },
           .shown = [text](const StoredRow& row) { return printable_line(text(row)); }};
 }
 

@@ -15,7 +15,7 @@
 #include "studies/closing/plain_step.h"
 #include "studies/search/evaluation_log.h"
 #include "studies/search/family_search.h"
-#include "studies/search/limit.h"
+#include "studies/search/least_time.h"
 #include "studies/search/search_budget.h"
 #include "studies/search/search_setting.h"
 #include "studies/search/searched_families.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "studies/search/first_touch_problem.h"
-#include "studies/search/limit.h"
+#include "studies/search/least_time.h"
 
 namespace softland {
 

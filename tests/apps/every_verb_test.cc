@@ -325,10 +325,13 @@ TEST(LimitCurves, FallWithTheVoltageAndTheSpeedAndAreDrawn_long) {
   const Outcome o = here.run({"limit", scene, "--quiet", "--out", "out"});
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_NE(o.out.find("voltage up to"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find(" optima found, "), std::string::npos) << o.out;
   const std::string svg = read(here.path() / "out/limit.svg");
   for (const char* title : {"Least time against the peak voltage", "Least time against the permitted impact velocity"})
     EXPECT_NE(svg.find(title), std::string::npos) << title;
   const json j = json::parse(read(here.path() / "out/limit.json"), nullptr, false);
+  const std::string log = read(here.path() / "out/attempts.csv");
+  EXPECT_EQ(std::ranges::count(log, '\n'), static_cast<long>(j["attempts"].size()) + 1) << log;
   for (const char* curve : {"over_peak_voltage", "over_impact_velocity"}) {
     double before = std::numeric_limits<double>::infinity();
     int found = 0;

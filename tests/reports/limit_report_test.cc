@@ -70,6 +70,61 @@ TEST(LimitReport, SaysHowSoftlyASlowWaveformCanLandAllDevices) {
   EXPECT_THAT(text, HasSubstr("(at 391\u00a0µs), has an impact velocity of at least 813\u00a0µm/s"));
 }
 
+// A log with an optimum that Ipopt did not find.
+Limit with_a_failure() {
+  Limit found = of_a_plate();
+  found.attempts = {{.goal = LimitGoal::touch,
+                     .found = {.status = Status::done,
+                               .stage = SearchStage::finer_mesh,
+                               .iterations = 30,
+                               .time = 25e-6,
+                               .permitted = 2e-3,
+                               .peak = 120},
+                     .accepted = true},
+                    {.goal = LimitGoal::over_peak,
+                     .found = {.status = Status::numerical_failure,
+                               .message = "Ipopt: Restoration_Failed",
+                               .stage = SearchStage::slower_touch,
+                               .iterations = 47,
+                               .permitted = 2e-3,
+                               .peak = 90}},
+                    {.goal = LimitGoal::over_peak,
+                     .found = {.status = Status::no_contact,
+                               .message = "full pull does not bring the switch to its contact",
+                               .permitted = 2e-3,
+                               .peak = 80}}};
+  return found;
+}
+
+TEST(LimitReport, NamesOptimaThatIpoptDidNotFind) {
+  const std::string all = text_of(record_of(of_a_plate(), ""));
+  EXPECT_THAT(all, HasSubstr("4 of 4 optima found, "));
+  EXPECT_THAT(all, Not(HasSubstr("Not found")));
+  const std::string text = text_of(record_of(with_a_failure(), ""));
+  EXPECT_THAT(text, HasSubstr("1 of 3 optima found, 77 iterations of Ipopt"));
+  EXPECT_THAT(text,
+              HasSubstr("Not found: touch at up to 2.00\u00a0mm/s with up to 90.00\u00a0V: Ipopt: Restoration_Failed (stage: "
+                        "slower touch, 47 iterations)"));
+  EXPECT_EQ(count(text, "Not found"), 1U) << "the table says what the drives cannot reach";
+}
+
+TEST(LimitReport, KeepsTheLogInJsonAndInATable) {
+  const LimitRecord record = record_of(with_a_failure(), "");
+  const nlohmann::json written = json_of(record);
+  EXPECT_EQ(written.at("attempts").at(1).at("goal"), "over peak voltage");
+  EXPECT_EQ(written.at("attempts").at(1).at("message"), "Ipopt: Restoration_Failed");
+  const LimitRecord again = read_limit(written);
+  EXPECT_EQ(json_of(again).dump(), written.dump());
+  EXPECT_EQ(text_of(again), text_of(record));
+  const std::string table = attempts_csv(again);
+  EXPECT_EQ(table, attempts_csv(record));
+  EXPECT_EQ(count(table, "\n"), 4U);
+  EXPECT_THAT(table, HasSubstr("\ntouch,false,0.002,120,true,done,finer mesh,,30,2.5e-05,,,,\n"));
+  EXPECT_THAT(table,
+              HasSubstr("\nover peak voltage,false,0.002,90,false,numerical_failure,slower touch,Ipopt: Restoration_Failed,47,,"
+                        ",,,\n"));
+}
+
 TEST(LimitReport, SaysForWhichModelALeastTimeIsABound) {
   const nlohmann::json of_plate = json_of(record_of(of_a_plate(), ""));
   EXPECT_EQ(of_plate.at("modes"), 1);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "base/gauss.h"
 #include "integrators/roots.h"
@@ -281,6 +282,44 @@ TEST(FirstTouchProblem, HasTheSlopesOfACharge) {
       EXPECT_NEAR(p.model.strength(0, volts), 0.4 * std::pow(120 - p.model.neutral_voltage(0), 2), 1e-8);
     }
   }
+}
+
+TEST(Limit, LogsEverySearchInTheOrderOfTheWork) {
+  const Pulse swing{.levels = {120, 0, 70}, .times = {16e-6, 25e-6}, .edge = 1e-8};
+  const Limit found = limit(spring_plate(), {.start = {{"main", swing}}});
+  using enum LimitGoal;
+  const std::vector<LimitGoal> goals{touch,         quicker_landing, quicker_landing, rest,      over_velocity,
+                                     over_velocity, over_velocity,   over_peak,       over_peak, over_peak,
+                                     over_peak,     over_peak,       over_peak,       over_peak};
+  ASSERT_EQ(found.attempts.size(), 2 * goals.size()) << "one from the swing and one from the waveform for each";
+  for (std::size_t k = 0; k < goals.size(); ++k) {
+    const LimitAttempt &swung = found.attempts[2 * k], &started = found.attempts[2 * k + 1];
+    EXPECT_EQ(swung.goal, goals[k]) << k;
+    EXPECT_EQ(started.goal, goals[k]) << k;
+    EXPECT_FALSE(swung.found.from_start);
+    EXPECT_TRUE(started.found.from_start);
+    EXPECT_LE(swung.accepted + started.accepted, 1);
+    for (const LimitAttempt* one : {&swung, &started}) {
+      const LeastTime& own = one->found;
+      EXPECT_EQ(own.iterations > 0, own.stage != SearchStage::start) << own.message;
+      EXPECT_EQ(own.message.empty(), own.status == Status::done) << own.message;
+      EXPECT_TRUE(!one->accepted || own.status == Status::done);
+    }
+  }
+  const auto accepted = std::ranges::find_if(found.attempts, &LimitAttempt::accepted);
+  ASSERT_NE(accepted, found.attempts.end());
+  EXPECT_EQ(accepted->found.time, found.touch.time);
+  EXPECT_EQ(accepted->found.from_start, found.touch.from_start);
+}
+
+TEST(Limit, LogsWhyAStartWasOfNoUse) {
+  const Limit found = limit(spring_plate(), {.impact_velocity = 0.01, .start = {{"main", Step{.level = 1}}}, .curves = false});
+  ASSERT_EQ(found.attempts.size(), 4U) << "touch and rest";
+  EXPECT_TRUE(found.attempts[0].accepted);
+  const LimitAttempt& started = found.attempts[1];
+  EXPECT_FALSE(started.accepted);
+  EXPECT_EQ(started.found.status, Status::no_contact);
+  EXPECT_EQ(started.found.message, "the waveform to start with does not bring the switch to its contact");
 }
 
 TEST(Limit, LandsAPlateAtRestWhereTheSlewIsLimited_optimized) {

@@ -11,7 +11,7 @@
 #include "model/constants.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/checking_runs.h"
-#include "studies/search/limit.h"
+#include "studies/search/least_time.h"
 #include "studies/search/optimize.h"
 #include "studies/search/verification.h"
 #include "tests/studies/scenes.h"
