@@ -96,9 +96,8 @@ const Channel& channel_of(const Recording& recording, const ReadKeys& keys, cons
   return *found;
 }
 
-TimeAxis time_axis(const Recording& recording) {
+TimeAxis time_axis(const std::vector<double>& t, std::optional<double> stated_interval) {
   TimeAxis axis;
-  const std::vector<double>& t = recording.times;
   if (t.empty()) return axis;
   axis.first = t.front();
   axis.last = t.back();
@@ -108,17 +107,29 @@ TimeAxis time_axis(const Recording& recording) {
     axis.greatest_interval = std::max(axis.greatest_interval, t[i] - t[i - 1]);
     if (t[i] < t[i - 1] && !axis.back) axis.back = i;
   }
-  if (recording.interval) {
-    axis.interval = *recording.interval;
+  if (stated_interval) {
+    axis.interval = *stated_interval;
   } else if (t.size() > 1) {
     axis.interval = (axis.last - axis.first) / static_cast<double>(t.size() - 1);
   }
   return axis;
 }
 
+TimeAxis time_axis(const Recording& recording) { return time_axis(recording.times, recording.interval); }
+
+std::string times_prose(const TimeAxis& axis) {
+  constexpr double rounding = 1e-3;  // largest difference of intervals by rounded times, relative to the interval
+  const auto seconds = [](double time) { return engineering(time, "s", 6); };
+  if (axis.greatest_interval < axis.least_interval) return "at " + seconds(axis.first);  // one row has no interval
+  const bool differ = axis.greatest_interval - axis.least_interval > rounding * std::abs(axis.interval);
+  return fmt::format("{}, from {} to {}",
+                     differ
+                         ? fmt::format("at intervals of {} to {}", seconds(axis.least_interval), seconds(axis.greatest_interval))
+                         : "every " + seconds(axis.interval),
+                     seconds(axis.first), seconds(axis.last));
+}
+
 std::string summary(const Recording& recording) {
-  constexpr int digits = 6;
-  const TimeAxis axis = time_axis(recording);
   std::vector<std::string> names;
   for (const Channel& channel : recording.channels) {
     names.push_back(printable_line(channel.name));
@@ -127,18 +138,7 @@ std::string summary(const Recording& recording) {
   const bool is_one = recording.rows() == 1;
   std::string text =
       fmt::format("{}: {}, {} {}", recording.format, fmt::join(names, ", "), recording.rows(), is_one ? "sample" : "samples");
-  if (recording.times.empty()) {
-    text += ", no times";
-  } else if (is_one) {
-    text += fmt::format(", at {}", engineering(axis.first, "s", digits));
-  } else {
-    constexpr double rounding = 1e-3;  // largest difference of intervals by rounded times, relative to the interval
-    const bool differ = axis.greatest_interval - axis.least_interval > rounding * std::abs(axis.interval);
-    text += differ ? fmt::format(", at intervals of {} to {}", engineering(axis.least_interval, "s", digits),
-                                 engineering(axis.greatest_interval, "s", digits))
-                   : fmt::format(", every {}", engineering(axis.interval, "s", digits));
-    text += fmt::format(", from {} to {}", engineering(axis.first, "s", digits), engineering(axis.last, "s", digits));
-  }
+  text += ", " + (recording.times.empty() ? "no times" : times_prose(time_axis(recording)));
   for (const std::string& note : recording.notes) text += "; " + note;
   for (const std::string& what : recording.left_out) text += "; left out: " + what;
   return text;

@@ -89,7 +89,12 @@ struct TimeAxis {
   std::size_t repeated = 0;              ///< number of rows with the same time as the row above
   std::optional<std::size_t> back = {};  ///< first row whose time is before that of the row above
 };
+[[nodiscard]] TimeAxis time_axis(const std::vector<double>& times, std::optional<double> stated_interval = {});
 [[nodiscard]] TimeAxis time_axis(const Recording& recording);
+
+/// Describes the times of rows: "every 1 us, from 0 s to 2 us", "at 3 us" for one row. Intervals that differ by more than the
+/// rounding of times are "at intervals of 1 us to 5 us". At least one row.
+[[nodiscard]] std::string times_prose(const TimeAxis& axis);
 
 /// Returns one line about a recording: format, channels, samples, interval, first and last time, and what was left out.
 [[nodiscard]] std::string summary(const Recording& recording);

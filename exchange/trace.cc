@@ -194,12 +194,12 @@ Trace trace_of(const Recording& recording, const ReadKeys& keys, const std::stri
   drop_missing(recording, channel, trace, note);
   for (const std::string& one : recording.notes) note += "; " + one;
   for (const std::string& what : recording.left_out) note += "; left out: " + what;
-  const double mean =
-      trace.times.size() > 1 ? (trace.times.back() - trace.times.front()) / static_cast<double>(trace.times.size() - 1) : 0;
-  trace.note =
-      fmt::format("{}, \"{}\": {} samples{}, from {} to {}{}", recording.format, printable_line(channel.name), trace.times.size(),
-                  recording.is_breakpoints ? std::string() : fmt::format(", every {}", seconds(mean)),
-                  seconds(trace.times.front()), seconds(trace.times.back()), note);
+  const std::string times = recording.is_breakpoints
+                                ? fmt::format("from {} to {}", seconds(trace.times.front()), seconds(trace.times.back()))
+                                : times_prose(time_axis(trace.times));
+  const std::size_t count = trace.times.size();
+  trace.note = fmt::format("{}, \"{}\": {} {}, {}{}", recording.format, printable_line(channel.name), count,
+                           count == 1 ? "sample" : "samples", times, note);
   return trace;
 }
 

@@ -39,6 +39,9 @@ TEST(Trace, ToldWhatIsTaken) {
       trace_in("t,A\n0,1.5\n1,2\n2,3\n").note,
       "columns, \"A\": 3 samples, every 1 s, from 0 s to 2 s; the file names no unit: V is assumed; the file names no unit of "
       "time: s is assumed");
+  EXPECT_EQ(trace_in("t (s),U (V)\n0,1\n1,2\n1.5,3\n4,3\n", {.uneven = true}).note,
+            "columns, \"U\": 4 samples, at intervals of 500 ms to 2.5 s, from 0 s to 4 s");
+  EXPECT_EQ(trace_in("t (s),U (V)\n3,1\n").note, "columns, \"U\": 1 sample, at 3 s");
 }
 
 TEST(Trace, TimesThatRepeatGoBackOrDriftAreRefused) {
