@@ -467,10 +467,10 @@ toml::table resolved_spread(const SceneFile::Impl& file) {
     const SectionReader in(file, "spread", name);
     toml::table keys = in.with_defaults();
     if (in.is_given("file")) {
-      const std::string unit = in.is_given("unit") ? in.text("unit") : "%";
+      const std::string unit = in.is_given("unit") ? in.text("unit") : std::string();
       toml::array values;
       for (const double value : file_values(in))
-        values.push_back(fmt::format("{} {}", number_text(in.is_given("unit") ? value : 100 * value), unit));
+        values.push_back(unit.empty() ? percent_text(value) : fmt::format("{} {}", number_text(value), unit));
       for (const std::string_view key : {"file", "column", "unit"}) keys.erase(key);
       keys.insert("values", std::move(values));
     }

@@ -394,13 +394,22 @@ std::string quantity_text(double value, const Dimension& dimension) {
 }
 
 std::string percent_text(double value) {
+  if (value == 0) return number_text(value) + " %";
   std::array<char, 32> buffer;
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific).ptr;
   const std::string_view text(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
   const auto e = text.find('e');
   int exponent = 0;  // from_chars accepts no plus sign in front
   std::from_chars(text.data() + e + (text[e + 1] == '+' ? 2 : 1), end, exponent);
-  return exponent == -2 ? fmt::format("{} %", text.substr(0, e)) : fmt::format("{}e{} %", text.substr(0, e), exponent + 2);
+  const int shift = exponent + 2;  // of the point, to the right
+  constexpr int most_digits = 15;
+  if (shift < 0 || shift > most_digits) return fmt::format("{}e{} %", text.substr(0, e), shift);
+  std::string number(text.substr(0, e));
+  std::erase(number, '.');
+  const std::size_t point = static_cast<std::size_t>(shift) + (number.starts_with('-') ? 2 : 1);
+  if (number.size() < point) number.append(point - number.size(), '0');
+  if (number.size() > point) number.insert(point, 1, '.');
+  return number + " %";
 }
 
 }  // namespace softland

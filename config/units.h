@@ -84,7 +84,7 @@ struct Quantity {
 [[nodiscard]] std::string number_text(double value);
 /// Returns a value as text, "2e-06 m", which reads back to the same bits. `value` is in the SI unit of `dimension`.
 [[nodiscard]] std::string quantity_text(double value, const Dimension& dimension);
-/// Returns a ratio as text in percent, "1.5e1 %" for 0.15, which reads back to the same bits.
+/// Returns a ratio as text in percent, "15 %" for 0.15, which reads back to the same bits.
 [[nodiscard]] std::string percent_text(double value);
 
 }  // namespace softland

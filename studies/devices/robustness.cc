@@ -317,6 +317,14 @@ void set_window(SceneFile& file, double window) {
   file.assign("simulate.duration", Quantity{.value = window, .dimension = dimension::time});
 }
 
+double rounded_up(double window) {
+  constexpr double rounding = 1e-12;  // a window of two digits, but for rounding errors, stays as it is
+  const int place = static_cast<int>(std::floor(std::log10(window))) - 1;
+  // Powers of ten with a positive exponent are exact, so that the quotient is the nearest double; 17 * 1e-4 is not.
+  const double power = std::pow(10, std::abs(place));
+  return place < 0 ? std::ceil(window * power * (1 - rounding)) / power : std::ceil(window / power * (1 - rounding)) * power;
+}
+
 namespace internal {
 namespace {
 

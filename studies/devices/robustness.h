@@ -153,6 +153,10 @@ struct NamedDrive {
 /// Sets the simulated time of a scene [s].
 void set_window(SceneFile& file, double window);
 
+/// Returns a simulated time [s], or another positive number, rounded up to two significant digits. The result is the double that
+/// is nearest to this decimal, so that a scene file says "0.0017 s".
+[[nodiscard]] double rounded_up(double window);
+
 namespace internal {
 
 /// Returns the statistics of a set of waveforms from the outcomes of the devices, which are ordered by device.

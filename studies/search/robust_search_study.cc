@@ -290,8 +290,8 @@ class RobustSearchStudy {
   [[nodiscard]] double whole_window(const DriveWaveforms& waveforms) const {
     const PreparedScene& given = first().given;
     const double needed = window_for(given, given.commanded(first().drives(waveforms))), bounces = 1.2 * searched_.free().until;
-    const double window = std::max(needed, bounces), digits = std::pow(10, std::floor(std::log10(window)) - 1);
-    return window > given.duration ? std::ceil(window / digits) * digits : window;
+    const double window = std::max(needed, bounces);
+    return window > given.duration ? rounded_up(window) : window;
   }
 
   void add(const CalibratedSearch& measured) {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "config/scene.h"
 #include "message.h"
@@ -199,6 +200,15 @@ TEST_F(SpreadFile, GivesTheValuesOfAColumn) {
   const Scene again = read_scene(resolved(scene, {{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}}));
   for (const double p : {0.1, 0.3, 0.77})
     EXPECT_DOUBLE_EQ(again.spread.variables.at(0).distribution.quantile(p), v.distribution.quantile(p)) << p;
+}
+
+TEST_F(SpreadFile, OfFactorsIsResolvedWithTheirOwnDigits) {
+  std::ofstream(folder / "factors.csv") << "ratio\n0.035\n0.98\n1.07\n";
+  const Scene scene =
+      read_scene(file(R"("structure.thickness" = { distribution = "empirical", file = "factors.csv", column = "ratio" })"));
+  const SceneFile whole = resolved(scene, {{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}});
+  EXPECT_EQ(whole.json()["spread"]["structure.thickness"]["values"], (nlohmann::json{"3.5 %", "98 %", "107 %"}));
+  EXPECT_EQ(read_scene(whole).spread.variables.at(0).distribution.support().low, 0.035);
 }
 
 TEST_F(SpreadFile, RefusesColumnsThatAreNotThere) {

@@ -311,6 +311,25 @@ TEST(Units, AnyFiniteNumberReadsBackToTheSameBits) {
   EXPECT_TRUE(holds);
 }
 
+TEST(Units, APercentageHasTheDigitsOfItsRatio) {
+  EXPECT_EQ(percent_text(0.15), "15 %");
+  EXPECT_EQ(percent_text(0.035), "3.5 %");
+  EXPECT_EQ(percent_text(1), "100 %");
+  EXPECT_EQ(percent_text(-1.125), "-112.5 %");
+  EXPECT_EQ(percent_text(0), "0 %");
+  EXPECT_EQ(percent_text(5e-4), "5e-2 %");
+  EXPECT_EQ(percent_text(1e300), "1e302 %");
+  const bool holds = rc::check([](std::uint64_t bits) {
+    double value = 0;
+    std::memcpy(&value, &bits, sizeof value);
+    RC_PRE(std::isfinite(value) && std::abs(value) < 1e300);
+    RC_ASSERT(parse_quantity(percent_text(value)).value == value);
+    const double near = std::fmod(value, 10);
+    RC_ASSERT(parse_quantity(percent_text(near)).value == near);
+  });
+  EXPECT_TRUE(holds);
+}
+
 TEST(Units, ExtremeNumbersReadBackToTheSameBits) {
   for (const double value : {std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::min(),
                              std::numeric_limits<double>::max(), -0.0, 0.1, 1.0 / 3.0}) {

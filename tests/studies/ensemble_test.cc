@@ -512,6 +512,16 @@ TEST(Robustness, RefusesDrivesThatTheSceneDoesNotAllow) {
 }
 
 // A key with two possible units varies in its own.
+TEST(Window, RoundedUpHasTwoDigits) {
+  for (const int exponent : {-9, -5, -4, 0, 3}) {
+    for (int digits = 10; digits < 100; ++digits) {
+      const double window = std::stod(fmt::format("{}e{}", digits, exponent));
+      EXPECT_EQ(rounded_up(window), window);
+      EXPECT_EQ(rounded_up(window * 0.9999), window) << "as the decimal reads, 0.0017 and not 17 * 1e-4";
+    }
+  }
+}
+
 TEST(Ensemble, KeepsTheUnitOfWhatVaries) {
   const SceneFile file = spring_plate({"structure.width=100 um", "gas.model=linear", "gas.damping=2e-5 N s/m",
                                        R"(spread."gas.damping"={ distribution = "normal", cov = "5 %" })"});
