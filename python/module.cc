@@ -8,7 +8,7 @@
 #include "config/units.h"
 #include "objectives/figures.h"
 #include "python/scene.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "version.h"
 
 namespace py = pybind11;

@@ -11,7 +11,6 @@
 #include "python/own.h"
 #include "python/scene.h"
 #include "reports/record_file.h"
-#include "reports/search_report.h"
 #include "reports/search_session.h"
 #include "verbs/optimize.h"
 #include "verbs/report_outcome.h"

@@ -13,7 +13,6 @@
 #include "document/chart.h"
 #include "document/quantity.h"
 #include "document/svg.h"
-#include "reports/accuracy_prose.h"
 #include "reports/accuracy_report.h"
 #include "reports/closing_captions.h"
 #include "reports/origin.h"

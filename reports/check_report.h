@@ -1,4 +1,5 @@
-// The results of `softland check` about a scene: JSON with SI units in the names, and lines for a terminal.
+// The results of `softland check` about a scene: JSON with SI units in the names, lines for a terminal, and a
+// drawing of the beam.
 #pragma once
 
 #include <array>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "model/device.h"
 #include "reports/pull_in_report.h"
 #include "studies/closing/closed_state.h"
 
@@ -49,5 +51,11 @@ void members(internal::Archive& a, CheckRecord& record);
 [[nodiscard]] nlohmann::json json_of(const CheckRecord& record);
 [[nodiscard]] CheckRecord read_check(const nlohmann::json& from);
 [[nodiscard]] std::string text_of(const CheckRecord& record);
+
+/// Returns a static SVG document of the beam at rest, to scale along its length; the device must have a beam. The view from above
+/// is to scale across the beam too, if that fits. The view from the side enlarges heights. Both views show sections, layers,
+/// anchors, electrodes and contacts, with the names of the last three and of the piezo layer; the view from above also shows
+/// holes.
+[[nodiscard]] std::string beam_drawing(const std::string& title, const Device& device);
 
 }  // namespace softland

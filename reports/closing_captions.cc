@@ -11,8 +11,6 @@
 #include "document/quantity.h"
 #include "reports/closing_prose.h"
 #include "reports/devices_report.h"
-#include "reports/drive_demand.h"
-#include "reports/figure_text.h"
 #include "reports/record.h"
 #include "studies/closing/hold.h"
 

@@ -10,9 +10,9 @@
 
 #include "document/axis.h"
 #include "document/quantity.h"
+#include "document/svg.h"
 #include "reports/closing_captions.h"
 #include "reports/closing_prose.h"
-#include "reports/drive_demand.h"
 
 namespace softland::internal {
 namespace {

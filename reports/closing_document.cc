@@ -17,8 +17,6 @@
 #include "reports/closing_prose.h"
 #include "reports/device_picture.h"
 #include "reports/devices_report.h"
-#include "reports/drive_demand.h"
-#include "reports/figure_text.h"
 #include "reports/motion_figure.h"
 #include "reports/record.h"
 #include "reports/seeds_report.h"

@@ -16,7 +16,7 @@
 #include "document/quantity.h"
 #include "document/svg.h"
 #include "reports/closing_charts.h"
-#include "reports/side_view.h"
+#include "reports/device_picture.h"
 #include "reports/study_members.h"
 #include "sampling/statistics.h"
 #include "waveforms/export.h"

@@ -16,7 +16,6 @@
 #include "document/quantity.h"
 #include "reports/closing_prose.h"
 #include "reports/device_gaps.h"
-#include "reports/figure_text.h"
 #include "reports/robustness_prose.h"
 
 namespace softland {

@@ -12,6 +12,7 @@
 
 #include "document/document.h"
 #include "reports/closing_record.h"
+#include "store/study_store.h"
 #include "studies/exploration/aims.h"
 
 namespace softland {
@@ -69,5 +70,14 @@ struct ExploredFront {
 /// Draws the map of a figure of merit over two variables as an SVG file; each other variable has the middle one of its values.
 /// Throws InvalidInput if the points are no grid of these variables.
 [[nodiscard]] std::string exploration_map_svg(const ExplorationReport& report, std::size_t x, std::size_t y, std::size_t figure);
+
+/// Reads all rows of the database file, with the stored waveforms. `pareto` names the figures of merit of the Pareto front, as
+/// the option --pareto does; empty: the figures that the plan minimises, if any. Throws InvalidInput as explored_aims() and
+/// StudyReader do.
+[[nodiscard]] ExplorationReport read_exploration(const StudyReader& store, const std::string& pareto);
+
+/// Adds waveforms that the database file lacks to the points on the Pareto front, by preparing their scenes. A point whose
+/// scene cannot be prepared gets no waveform.
+void add_front_waveforms(ExplorationReport& report, const StudyReader& store, const Progress& progress);
 
 }  // namespace softland

@@ -8,7 +8,7 @@
 #include "config/assumed_spread.h"
 #include "document/document.h"
 #include "document/quantity.h"
-#include "reports/estimates.h"
+#include "reports/robustness_prose.h"
 #include "reports/study_members.h"
 #include "sampling/statistics.h"
 

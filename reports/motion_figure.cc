@@ -14,7 +14,7 @@
 #include "document/escape.h"
 #include "document/quantity.h"
 #include "reports/closing_captions.h"
-#include "reports/side_view.h"
+#include "reports/device_picture.h"
 
 namespace softland::internal {
 namespace {

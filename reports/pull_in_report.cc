@@ -17,7 +17,7 @@
 #include "document/text.h"
 #include "model/pull_in.h"
 #include "reports/closing_record.h"
-#include "reports/pull_in_members.h"
+#include "reports/study_members.h"
 #include "studies/closing/closed_state.h"
 #include "studies/devices/stable_approach.h"
 
@@ -32,6 +32,23 @@ namespace {
 constexpr std::array by_modes_rows{std::pair("static_V", &VoltagesByModes::static_pull_in),
                                    std::pair("release_V", &VoltagesByModes::release),
                                    std::pair("pulled_through_V", &VoltagesByModes::pulled_through)};
+
+// Writes pull-in, release and collapse voltages by the number of modes; JSON is null if they were not computed.
+json voltages_by_modes_json(const std::optional<VoltagesByModes>& found) {
+  json all;
+  for (const auto& [key, voltage] : by_modes_rows) {
+    if (found && !(*found.*voltage).values.empty()) all[key] = internal::by_modes_json(*found.*voltage);
+  }
+  return all;
+}
+
+std::optional<VoltagesByModes> read_voltages_by_modes(const json& from) {
+  if (!from.is_object()) return std::nullopt;
+  VoltagesByModes all;
+  for (const auto& [key, voltage] : by_modes_rows)
+    all.*voltage = internal::read_by_modes(internal::value_at(from, key)).value_or(ByModes{});
+  return all;
+}
 
 std::string dynamic_kind(const PreparedScene& p, std::size_t k, double statically, double dynamically) {
   if (!std::isfinite(dynamically)) return {};
@@ -140,19 +157,30 @@ std::string electrode_prose(const std::string& name, const ElectrodeRecord& elec
 
 }  // namespace
 
-json internal::voltages_by_modes_json(const std::optional<VoltagesByModes>& found) {
-  json all;
-  for (const auto& [key, voltage] : by_modes_rows) {
-    if (found && !(*found.*voltage).values.empty()) all[key] = by_modes_json(*found.*voltage);
-  }
-  return all;
+void members(internal::Archive& a, PullInRecord& found) {
+  a("static_V", found.static_pull_in, "static pull-in voltage");
+  a("static_kind", internal::OrNull{found.static_kind}, "how the stable equilibrium ends: `fold` or `contact`");
+  a("deflection_m", found.deflection, "deflection of the contact point at the static voltage");
+  a("dynamic_V", found.dynamic_pull_in, "dynamic pull-in voltage");
+  a("dynamic_kind", internal::OrNull{found.dynamic_kind},
+    "`overshoot`; `overdamped`: equals the static voltage; `unstable_rest`: no step moves the switch");
+  a("release_V", found.release, "release voltage");
+  a("pulled_through_V", found.pulled_through, "voltage at which the closed structure collapses onto the electrode");
+  if (a.has(std::isfinite(found.neutral))) a("neutral_V", found.neutral, "voltage without a field, for a charged dielectric");
+  a.custom("by_modes", found.by_modes, voltages_by_modes_json, read_voltages_by_modes,
+           internal::Like<std::map<std::string, std::map<std::string, double>>>{
+               "each voltage by number of modes, `converged`: extrapolated; null for a plate and a table of modes"});
 }
 
-std::optional<VoltagesByModes> internal::read_voltages_by_modes(const json& from) {
-  if (!from.is_object()) return std::nullopt;
-  VoltagesByModes all;
-  for (const auto& [key, voltage] : by_modes_rows) all.*voltage = read_by_modes(value_at(from, key)).value_or(ByModes{});
-  return all;
+void members(internal::Archive& a, StablePathRecord& path) {
+  std::vector<std::string> drives{path.drive};
+  if (a.reads()) drives.clear();
+  a("drives", drives, "drive that moves the switch to its contact");
+  if (!drives.empty()) path.drive = drives.front();
+  a("reaches_V", path.reaches, "level at which the nominal design touches");
+  a("limit_V", path.limit, "limit of the voltage source");
+  a("share_of_devices", internal::OrNull{path.share},
+    "share of the devices of [spread] that reach the contact by this drive alone");
 }
 
 void members(internal::Archive& a, ElectrodeRecord& electrode) {

@@ -2,6 +2,7 @@
 // `check` also reports the voltages of an electrode, and the stable path by which one electrode or piezo closes the switch.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -87,7 +88,9 @@ struct PullInsRecord {
 /// computation.
 inline constexpr const char* stable_path_left_out = "the stable path";
 
-/// Names the members of the JSON.
+/// Names the members of the JSON; `check` has the pull-in voltages and the stable path, too.
+void members(internal::Archive& a, PullInRecord& found);
+void members(internal::Archive& a, StablePathRecord& path);
 void members(internal::Archive& a, PullInsRecord& record);
 [[nodiscard]] nlohmann::json json_of(const PullInsRecord& record);
 [[nodiscard]] PullInsRecord read_pull_ins(const nlohmann::json& from);

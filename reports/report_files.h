@@ -8,7 +8,7 @@
 
 #include "reports/closing_record.h"
 #include "reports/robustness_report.h"
-#include "reports/search_report.h"
+#include "reports/search_session.h"
 
 namespace softland {
 

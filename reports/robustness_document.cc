@@ -16,13 +16,10 @@
 #include "document/escape.h"
 #include "document/quantity.h"
 #include "document/text.h"
-#include "reports/box_and_chaos_report.h"
-#include "reports/derivatives_report.h"
-#include "reports/device_scatter.h"
-#include "reports/estimates.h"
 #include "reports/origin.h"
 #include "reports/robustness_prose.h"
 #include "reports/robustness_report.h"
+#include "reports/robustness_sections.h"
 #include "sampling/statistics.h"
 
 namespace softland {

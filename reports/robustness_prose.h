@@ -54,4 +54,9 @@ inline constexpr std::string_view worst_prose =
 /// sample, in `rows` groups, of which `failed_rows` have a device without the figure.
 [[nodiscard]] std::string why_no_indices(std::size_t rows, std::size_t failed_rows);
 
+/// Returns a share of devices with its confidence interval as text: "3.4 % (2.7 to 4.3)".
+[[nodiscard]] std::string yield_text(const Yield& yield);
+/// Returns a quantile with its confidence interval as text: "26.9 mm/s (26.6 to 27.1)"; an infinite value is "∞".
+[[nodiscard]] std::string quantile_text(const EstimatedQuantile& quantile, std::string_view unit);
+
 }  // namespace softland::internal

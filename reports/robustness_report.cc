@@ -12,9 +12,8 @@
 #include "base/require.h"
 #include "config/assumed_spread.h"
 #include "document/json_number.h"
-#include "reports/box_and_chaos_report.h"
-#include "reports/derivatives_report.h"
 #include "reports/robustness_prose.h"
+#include "reports/robustness_sections.h"
 #include "reports/study_members.h"
 #include "studies/closing/closed_state.h"
 #include "studies/closing/simulate.h"
@@ -150,6 +149,18 @@ json internal::windows_json(const HoldWindows& windows) {
   json all = json::object();
   for (const auto& [electrode, window] : windows.of_electrodes)
     all[electrode] = std::isfinite(window.lower) ? json::array({window.lower, json_number(window.upper)}) : json();
+  return all;
+}
+
+HoldWindows internal::read_windows(const json& ends) {
+  HoldWindows all;
+  if (!ends.is_object()) return all;
+  for (const auto& [electrode, window] : ends.items()) {
+    HoldWindow& one = all.of_electrodes[electrode];
+    if (window.is_array() && window.size() == 2)
+      one = {.lower = read_json<double>(window[0]),
+             .upper = window[1].is_null() ? std::numeric_limits<double>::infinity() : read_json<double>(window[1])};
+  }
   return all;
 }
 

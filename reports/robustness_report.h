@@ -166,6 +166,7 @@ namespace internal {
 /// Returns, by electrode, the lower and upper hold voltage between which 99 % of the devices stay closed [V]. JSON is null if
 /// no voltage does this; an upper voltage that does not exist is null.
 [[nodiscard]] nlohmann::json windows_json(const HoldWindows& windows);
+[[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
 
 }  // namespace internal
 }  // namespace softland

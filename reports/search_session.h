@@ -12,19 +12,80 @@
 //   session.leave(report);
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/progress.h"
+#include "config/scene.h"
+#include "optimizers/problem.h"
+#include "reports/closing_record.h"
 #include "reports/result_folder.h"
-#include "reports/search_log.h"
-#include "reports/search_report.h"
+#include "reports/robustness_report.h"
+#include "studies/search/evaluation_memory.h"
 #include "studies/search/evaluation_store.h"
+#include "studies/search/search_request.h"
 #include "studies/search/stored_search.h"
 
 namespace softland {
+
+/// Writes best.toml and evaluations.csv to the unfinished results of a folder. Several threads may call the member functions.
+class SearchLog {
+ public:
+  /// Writes evaluations.csv with these columns and no rows, so that a run with a folder that cannot be written ends before its
+  /// first evaluation.
+  SearchLog(ResultFolder& folder, FamilyColumns columns);
+
+  /// Records an evaluation for evaluations.csv.
+  void evaluated(const Evaluation& evaluation);
+  /// Records a scene with a better waveform. best.toml and evaluations.csv are then written completely, but at most once a
+  /// second.
+  void improved(const SceneFile& best);
+  /// Writes all evaluations and better scenes that are not yet on the disk.
+  void flush();
+
+  /// Returns the evaluations of the search by index; call it only after the last call of evaluated().
+  [[nodiscard]] const std::map<long, Evaluation>& evaluations() const { return evaluations_; }
+
+ private:
+  void write();
+
+  ResultFolder& folder_;
+  FamilyColumns columns_;
+  std::mutex mutex_;                        // guards evaluations and best scene, which several threads record
+  std::map<long, Evaluation> evaluations_;  // evaluations by index, so that their order is the same for any number of threads
+  std::string best_;
+  bool pending_ = false;
+  std::chrono::steady_clock::time_point written_{};
+};
+
+/// The result of a search of any kind, with the data for reports. `result` and `devices` keep references to `found`: a
+/// SearchReport must not be moved.
+struct SearchReport {
+  explicit SearchReport(FoundSearch search) : found(std::move(search)) {}
+  SearchReport(const SearchReport&) = delete;
+  SearchReport& operator=(const SearchReport&) = delete;
+
+  FoundSearch found;
+  /// Report on simulated devices under process variation; none if no devices were simulated.
+  std::optional<RobustnessReport> devices = {};
+  ClosingRecord result = {};
+};
+
+/// Adds the report on devices under process variation. A search that minimises one statistic of the devices needs further
+/// simulations for this, which `progress` watches; an interruption marks the search as interrupted.
+void add_devices(SearchReport& report, const PlannedSearch& search, const std::string& command, const Progress& progress);
+
+/// Sets `result`, from which reports are made. `folder` is the final folder of the files: a report suggests a command that
+/// scales the waveform in the folder for a measured device.
+void add_result(SearchReport& report, const PlannedSearch& search, const std::filesystem::path& folder,
+                const std::string& command);
 
 /// Name of the database file in the folder of a search with several seeds.
 inline constexpr const char* seeds_file = "seeds.sqlite";

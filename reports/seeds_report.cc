@@ -10,11 +10,43 @@
 #include <vector>
 
 #include "document/quantity.h"
-#include "reports/figure_text.h"
+#include "reports/closing_prose.h"
 #include "reports/study_members.h"
 #include "sampling/statistics.h"
 
 namespace softland {
+namespace internal {
+
+/// Least value, quartiles and largest value of a sample.
+struct FiveNumbers {
+  double least = Metrics::unset, lower_quartile = Metrics::unset, median = Metrics::unset, upper_quartile = Metrics::unset,
+         most = Metrics::unset;
+};
+void members(Archive& a, FiveNumbers& numbers) {
+  a("least", numbers.least, "least value");
+  a("lower_quartile", numbers.lower_quartile, "lower quartile");
+  a("median", numbers.median, "median");
+  a("upper_quartile", numbers.upper_quartile, "upper quartile");
+  a("most", numbers.most, "largest value");
+}
+struct FailedSeed {
+  std::uint64_t seed = 0;
+  std::string reason;
+};
+void members(Archive& a, FailedSeed& failed) {
+  a("seed", failed.seed, "seed of the search");
+  a("reason", failed.reason, "why it failed");
+}
+/// The common outcome of searches with several seeds.
+struct SeedsSummary {
+  std::int64_t goal_met = 0, confirmed = 0;  ///< numbers of searches
+  std::vector<FailedSeed> failed;
+  FiveNumbers cost;
+  std::map<std::string, FiveNumbers> figures;
+};
+
+}  // namespace internal
+
 namespace {
 
 using namespace internal;
@@ -52,6 +84,19 @@ std::string failure(const SearchOfSeed& one) {
   if (!std::isfinite(one.cost)) return "no feasible waveform";
   if (!one.better_than_baseline && !one.goal_met) return "no better than the plain step";
   return one.goal_met ? "" : "goal not met";
+}
+
+SeedsSummary seeds_summary(const SeedsFindings& seeds) {
+  SeedsSummary all{.goal_met = std::ranges::count_if(seeds.searches, &SearchOfSeed::goal_met),
+                   .confirmed = std::ranges::count_if(seeds.searches, &SearchOfSeed::confirmed),
+                   .failed = {},
+                   .cost = spread_of_cost(seeds),
+                   .figures = {}};
+  for (const SearchOfSeed& one : seeds.searches) {
+    if (std::string why = failure(one); !why.empty()) all.failed.push_back({one.seed, std::move(why)});
+  }
+  for (const Figure& f : shown_figures) all.figures[std::string(f.key)] = spread_of(seeds, f);
+  return all;
 }
 
 std::string outcome(const SearchOfSeed& one) {
@@ -94,17 +139,43 @@ void rank(SeedsFindings& seeds, const Aim& target, double significant, bool over
   seeds.best = static_cast<std::size_t>(best - seeds.searches.begin());
 }
 
-SeedsSummary internal::seeds_summary(const SeedsFindings& seeds) {
-  SeedsSummary all{.goal_met = std::ranges::count_if(seeds.searches, &SearchOfSeed::goal_met),
-                   .confirmed = std::ranges::count_if(seeds.searches, &SearchOfSeed::confirmed),
-                   .failed = {},
-                   .cost = spread_of_cost(seeds),
-                   .figures = {}};
-  for (const SearchOfSeed& one : seeds.searches) {
-    if (std::string why = failure(one); !why.empty()) all.failed.push_back({one.seed, std::move(why)});
+void members(internal::Archive& a, SearchOfSeed& search) {
+  a("seed", search.seed, "seed of the search");
+  a("status", search.status, "outcome of the search");
+  a("cost", search.cost, "its lowest cost");
+  a("evaluations", search.evaluations, "number of evaluations");
+  a("termination", search.termination, "why the search ended");
+  a("goal_met", search.goal_met, "whether the goal of the target is met");
+  a("confirmed", search.confirmed, "whether the confirmations agree");
+  a("better_than_baseline", search.better_than_baseline, "whether the waveform is better than the plain step");
+  a.object(
+      "metrics", [&](auto& metrics) { metrics.figures(search.figures, internal::every_figure); },
+      "figures under the found waveform");
+}
+
+void members(internal::Archive& a, SeedsFindings& seeds) {
+  a("planned", seeds.planned, "planned number of searches");
+  a("searches", seeds.searches, "completed searches, by seed");
+  const auto seed_of = [&](std::size_t k) {
+    return k < seeds.searches.size() ? nlohmann::json(seeds.searches[k].seed) : nlohmann::json();
+  };
+  a.custom(
+      "best_seed", seeds.best, seed_of,
+      [&](const nlohmann::json& seed) {
+        std::size_t best = seeds.searches.size();
+        while (best > 0 && seed_of(--best) != seed) {
+        }
+        return best;
+      },
+      internal::Like<std::uint64_t>{"seed of the best search"});
+  if (!a.reads()) {
+    const SeedsSummary summary = seeds_summary(seeds);
+    a("goal_met", summary.goal_met, "number of searches that met the goal");
+    a("confirmed", summary.confirmed, "number of searches that were confirmed");
+    a("failed", summary.failed, "searches that failed");
+    a("cost", summary.cost, "costs of the searches");
+    a("metrics", summary.figures, "figures of the searches, by key");
   }
-  for (const Figure& f : shown_figures) all.figures[std::string(f.key)] = spread_of(seeds, f);
-  return all;
 }
 
 void members(internal::Archive& a, SeedsRecord& record) {

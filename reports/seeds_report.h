@@ -26,6 +26,7 @@ struct SeedsRecord {
   SeedsFindings seeds;
 };
 /// Names the members of the JSON.
+void members(internal::Archive& a, SeedsFindings& seeds);
 void members(internal::Archive& a, SeedsRecord& record);
 [[nodiscard]] nlohmann::json json_of(const SeedsRecord& record);
 [[nodiscard]] SeedsRecord read_seeds(const nlohmann::json& from);

@@ -18,7 +18,6 @@
 #include "model/constants.h"
 #include "model/gas/gas_law.h"
 #include "model/pull_in.h"
-#include "reports/beam_drawing.h"
 #include "reports/check_report.h"
 #include "studies/closing/auto_settings.h"
 #include "studies/closing/closed_state.h"

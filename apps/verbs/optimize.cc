@@ -35,7 +35,7 @@
 #include "reports/record_file.h"
 #include "reports/report_files.h"
 #include "reports/robustness_prose.h"
-#include "reports/search_report.h"
+#include "reports/search_session.h"
 #include "reports/seeds_report.h"
 #include "studies/search/least_time.h"
 #include "studies/search/robust_optimize.h"

@@ -23,7 +23,6 @@
 #include "base/shortened.h"
 #include "document/text.h"
 #include "reports/closing_record.h"
-#include "reports/exploration_reader.h"
 #include "reports/exploration_report.h"
 #include "reports/record.h"
 #include "store/study_store.h"

@@ -1,6 +1,6 @@
 // The findings of a search over varied devices, from which its reports are made: how the found waveforms perform on fresh
 // devices (devices that the search has not used), and how they were chosen. The JSON of a search holds all findings
-// (reports/closing_members.h), so that a report can be made again.
+// (reports/search_json.cc), so that a report can be made again.
 #pragma once
 
 #include <array>

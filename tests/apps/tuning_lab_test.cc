@@ -14,7 +14,7 @@
 
 #include "base/require.h"
 #include "program.h"
-#include "reports/tuning_log.h"
+#include "reports/tuning_session.h"
 #include "waveforms/step.h"
 
 namespace softland::apps {

@@ -26,7 +26,7 @@
 #include "objectives/figures.h"
 #include "reports/accuracy_report.h"
 #include "reports/check_report.h"
-#include "reports/closing_members.h"
+#include "reports/closing_record.h"
 #include "reports/cycle_report.h"
 #include "reports/effects_report.h"
 #include "reports/fit_report.h"

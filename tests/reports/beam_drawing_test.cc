@@ -1,5 +1,3 @@
-#include "reports/beam_drawing.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "reports/check_report.h"
 #include "tests/support/devices.h"
 
 namespace softland {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "reports/closing_prose.h"
 #include "reports/closing_record.h"
-#include "reports/figure_text.h"
 #include "sample_result.h"
 #include "studies/closing/hold.h"
 

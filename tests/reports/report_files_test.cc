@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/search_report.h"
+#include "reports/search_session.h"
 #include "studies/closing/sent_signals.h"
 #include "waveforms/export.h"
 

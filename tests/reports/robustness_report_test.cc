@@ -14,8 +14,8 @@
 #include <string>
 
 #include "document/text.h"
-#include "reports/box_and_chaos_report.h"
-#include "reports/estimates.h"
+#include "reports/robustness_prose.h"
+#include "reports/robustness_sections.h"
 #include "studies/closing/auto_settings.h"
 
 namespace softland::robustness_report_test {
