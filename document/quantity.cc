@@ -210,9 +210,20 @@ std::string times(double ratio) {
   return (ratio < 9.95 ? fmt::format("{:.1f}", ratio) : fmt::format("{:.0f}", ratio)) + " times";
 }
 
-std::string percent(double share) {
+std::string percent(double ratio) {
+  if (!std::isfinite(ratio)) return none;
+  return ratio > most_percent ? times(ratio) : fmt::format("{:.{}f} %", 100 * ratio, ratio < 1 ? 1 : 0);
+}
+
+std::string share_text(double share) { return std::isfinite(share) ? share_number(share) + " %" : none; }
+
+std::string share_number(double share) {
+  constexpr double rounding = 1e-12;  // error of a share that is computed as a sum or a difference
   if (!std::isfinite(share)) return none;
-  return share > most_percent ? times(share) : fmt::format("{:.{}f} %", 100 * share, share < 1 ? 1 : 0);
+  if (share >= 1 - rounding) return "100";
+  if (share <= rounding) return "0.0";
+  const std::string number = fmt::format("{:.1f}", 100 * share);
+  return number == "100.0" ? "> 99.9" : number == "0.0" ? "< 0.1" : number;
 }
 
 std::string relative_change(double change) {

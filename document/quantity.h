@@ -65,8 +65,15 @@ struct Prefix {
 /// Formats a ratio of at least 1: "8.4 times", "107 times", "more than 1000 times".
 [[nodiscard]] std::string times(double ratio);
 
-/// Formats a share or spread: 0.212 -> "21.2 %"; a share above 10 as times() does.
-[[nodiscard]] std::string percent(double share);
+/// Formats a spread or another ratio that may exceed 1: 0.212 -> "21.2 %"; a ratio above 10 as times() does.
+[[nodiscard]] std::string percent(double ratio);
+
+/// Formats a share of devices, waveforms or rows, from 0 to 1: 0.212 -> "21.2 %". Only all of them are "100 %" and only none
+/// "0.0 %"; shares that would round to these are "> 99.9 %" and "< 0.1 %". Non-finite: an em dash.
+[[nodiscard]] std::string share_text(double share);
+
+/// Formats as share_text() does, without the unit, for several shares in one cell: "21.2".
+[[nodiscard]] std::string share_number(double share);
 
 /// Formats a relative change: 0.25 -> "+25.0 %", -0.05 -> "−5.0 %"; an increase by more than 1000 % as a factor: "× 54", "> ×
 /// 1000".

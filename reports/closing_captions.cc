@@ -98,7 +98,7 @@ std::string of_devices_that_fail(const ClosingRecord& result) {
   std::string words = fmt::format(
       " {} of the new devices stay open, are not kept closed by their hold voltages, or are outside the model; they count as the "
       "worst devices.",
-      percent(robust->failing));
+      share_text(robust->failing));
   if (!robust->is_told)
     words +=
         fmt::format(" The statistic {} depends on these devices alone and cannot rank waveforms: the search has gained nothing.",
@@ -389,14 +389,10 @@ std::string robust_caption(const ClosingRecord& result) {
     }
     words += ".";
   }
-  const auto share = [&](const FulfilledCondition& c) {
-    const auto& [low, high] = c.share.interval;
-    return fmt::format("{} ({} to {})", percent(c.share.value), plain_number(100 * low), plain_number(100 * high));
-  };
-  if (r.yield) words += fmt::format(" {} of the new devices have {}.", share(*r.yield), r.yield->text);
+  if (r.yield) words += fmt::format(" {} of the new devices have {}.", yield_text(r.yield->share), r.yield->text);
   for (const FulfilledCondition& c : r.conditions) {
     words += fmt::format(" The condition {} {}: {} of the new devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
-                         share(c));
+                         yield_text(c.share));
   }
   return words;
 }

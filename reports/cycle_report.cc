@@ -24,8 +24,8 @@
 namespace softland {
 namespace {
 
-using internal::percent;
 using internal::quantity;
+using internal::share_text;
 using nlohmann::json;
 
 constexpr std::size_t most_of_course = 4000;  // largest number of points in a drawn curve of the gap over the cycles
@@ -136,7 +136,7 @@ ReportTable rates_table(const CycleRecord& r) {
     if (!has_devices) continue;
     table.rows[2].push_back(d.devices ? rate_prose(d.devices->at_5) : "—");
     table.rows[3].push_back(d.devices ? rate_prose(d.devices->at_50) : "—");
-    if (has_rate) table.rows[4].push_back(d.devices ? percent(d.devices->steady) : "—");
+    if (has_rate) table.rows[4].push_back(d.devices ? share_text(d.devices->steady) : "—");
   }
   return table;
 }

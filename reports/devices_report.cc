@@ -75,16 +75,12 @@ std::string with_bracket(const std::string& value, const std::string& other) {
                  : fmt::format("{} ({})", value, other);
 }
 
-// Returns the cell "2.0 / 98 / 100 %": the shares of devices whose highest rebound is at most each height of yield_heights.
-// Shares are rounded down, so that 100 % means all devices.
+// Returns the cell "2.0 / 97.9 / 100 %": the shares of devices whose highest rebound is at most each height of yield_heights.
 std::string yields_cell(const DevicesFindings::Row& row) {
   if (row.yield.empty()) return "—";
   std::string cell;
-  for (const auto& [height, key] : DevicesFindings::yield_heights) {
-    constexpr double few = 10;
-    const double share = 100 * value_in(row.yield, key) + 1e-9;
-    cell += (cell.empty() ? "" : " / ") + (share < few ? fmt::format("{:.1f}", share) : fmt::format("{:.0f}", std::floor(share)));
-  }
+  for (const auto& [height, key] : DevicesFindings::yield_heights)
+    cell += (cell.empty() ? "" : " / ") + share_number(value_in(row.yield, key));
   return cell + " %";
 }
 
@@ -249,7 +245,7 @@ std::string internal::devices_headline(const ClosingRecord& result) {
         d.goal_met == true ? "The plain step does not bounce on 95 % of the devices. " : "", assumed, figures);
   }
   const std::string lands = own->bounce_free >= half ? fmt::format("{} close bounce-free (plain step {}), and 95 % touch",
-                                                                   percent(own->bounce_free), percent(step->bounce_free))
+                                                                   share_text(own->bounce_free), share_text(step->bounce_free))
                                                      : std::string("95 % touch");
   std::string words = fmt::format("Of {:.0f} simulated devices{}, {} at no more than {} instead of {}", d.count, assumed, lands,
                                   speed_of(*own), speed_of(*step));
@@ -298,9 +294,9 @@ ReportTable devices_table(const DevicesFindings& d, const std::vector<std::pair<
       line.emplace_back(std::move(cell), style);
     }
     line.emplace_back(yields_cell(*row), style);
-    const std::string open = percent(std::max(0.0, row->open)), pulled = percent(row->collapsed);
-    if (stay_open && pulled_in) line.emplace_back(open.substr(0, open.rfind(' ')) + " / " + pulled, style);
-    if (stay_open != pulled_in) line.emplace_back(stay_open ? open : pulled, style);
+    const double open = std::max(0.0, row->open);
+    if (stay_open && pulled_in) line.emplace_back(share_number(open) + " / " + share_text(row->collapsed), style);
+    if (stay_open != pulled_in) line.emplace_back(share_text(stay_open ? open : row->collapsed), style);
   }
   return table;
 }
@@ -345,8 +341,8 @@ std::string path_prose(const DevicesFindings& d) {
   const bool is_used = d.better_than_plain_step && d.waveform.starts_with(quasi_static_family);
   std::string words = fmt::format(
       "The {} {} {} of the devices to their contact through stable equilibria within {} (the nominal design touches at {}){}.",
-      drive, is_used ? "carries" : "alone can carry", percent(path.share), quantity(path.limit, "V"), quantity(path.reaches, "V"),
-      is_used ? "" : ", but best.toml does not do so");
+      drive, is_used ? "carries" : "alone can carry", share_text(path.share), quantity(path.limit, "V"),
+      quantity(path.reaches, "V"), is_used ? "" : ", but best.toml does not do so");
   if (is_used && path.share < 1)
     words += " The electrode pulls in the others, at a larger impact velocity (see the 99th percentile).";
   if (drive == "piezo") words += " The model has no creep and no hysteresis of the piezo.";
@@ -376,7 +372,7 @@ std::string measuring_prose(const DevicesFindings& d) {
   const bool lands_more = measured->bounce_free >= half && measured->bounce_free > own->bounce_free;
   return lands_more
              ? fmt::format("With per-device calibration ({}), {} of the devices close bounce-free: calibrated.toml.", what,
-                           percent(measured->bounce_free))
+                           share_text(measured->bounce_free))
              : fmt::format(
                    "With per-device calibration ({}), the 95th percentile of the largest impact velocity is {}: calibrated.toml.",
                    what, speed_of(*measured));
@@ -428,7 +424,7 @@ ReportSection internal::devices_section(const DevicesFindings& d) {
   note(window_prose(d.windows));
   for (const FulfilledCondition& c : d.conditions)
     note(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
-                     percent(c.share.value)));
+                     share_text(c.share.value)));
   if (!d.next_command.empty()) {
     section.parts.emplace_back(SubHeading{export_heading(d)});
     section.parts.emplace_back(ReportList{{d.next_command}});

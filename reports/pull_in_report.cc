@@ -315,7 +315,7 @@ std::string words_of(const std::optional<StablePathRecord>& path) {
       fmt::format("the {} alone reaches the contact at {} through stable equilibria",
                   path->drive == piezo_drive ? "piezo" : "electrode " + path->drive, quantity(path->reaches, "V", 4));
   if (path->share)
-    words += fmt::format("; {} of the devices do so within {}", internal::percent(*path->share),
+    words += fmt::format("; {} of the devices do so within {}", internal::share_text(*path->share),
                          internal::given_quantity(path->limit, "V"));
   return words;
 }

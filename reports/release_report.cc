@@ -24,6 +24,7 @@ namespace {
 
 using internal::percent;
 using internal::quantity;
+using internal::share_text;
 using internal::spread_prose;
 using nlohmann::json;
 
@@ -126,8 +127,8 @@ double shown_until(const ReleaseRecord& r, double window) {
 // piezos drop to 0 V at once, and for the found opening.
 ReportSection devices_section(const ReleaseRecord::Devices& found) {
   ReportTable table{.head = {"", plain_prose, "found"}, .rows = {}};
-  table.rows = {{"come to rest in the open position", percent(found.plain.open), percent(found.best.open)},
-                {"at rest as soon as the drives stand at 0 V", percent(found.plain.in_band), percent(found.best.in_band)}};
+  table.rows = {{"come to rest in the open position", share_text(found.plain.open), share_text(found.best.open)},
+                {"at rest as soon as the drives stand at 0 V", share_text(found.plain.in_band), share_text(found.best.in_band)}};
   const auto add = [&](const char* name, double DeviceOpenings::*figure, const char* unit) {
     const auto value = [&](double v) { return std::isfinite(v) ? quantity(v, unit) : std::string("∞"); };
     table.rows.push_back({name, value(found.plain.*figure), value(found.best.*figure)});

@@ -33,6 +33,7 @@ using internal::percent;
 using internal::quantile_95;
 using internal::quantile_text;
 using internal::quantity;
+using internal::share_text;
 using internal::shown_drive;
 using internal::some_collapse;
 using internal::with_article;
@@ -400,11 +401,11 @@ std::pair<std::string, std::string> headline_of(const RobustnessRecord& found) {
   const auto words = [&](const DriveRecord& d) {
     return fmt::format(
         "{} of {} {} bounce-free; the 95th percentile is {} for the largest impact velocity and {} for the highest rebound",
-        percent(d.bounce_free.value), internal::devices_text(found.devices), found.devices == 1 ? "closes" : "close",
+        share_text(d.bounce_free.value), internal::devices_text(found.devices), found.devices == 1 ? "closes" : "close",
         quantity(quantile_95(d, drawn_figures[0]).value, "m/s"), quantity(quantile_95(d, drawn_figures[1]).value, "m"));
   };
   if (found.drives.size() == 1) return {"Under the plain step " + words(step) + ".", ""};
-  return {words(own), fmt::format("; under the plain step these figures are {}, {} and {}.", percent(step.bounce_free.value),
+  return {words(own), fmt::format("; under the plain step these figures are {}, {} and {}.", share_text(step.bounce_free.value),
                                   quantity(quantile_95(step, drawn_figures[0]).value, "m/s"),
                                   quantity(quantile_95(step, drawn_figures[1]).value, "m"))};
 }
@@ -413,7 +414,7 @@ std::vector<KeyNumber> keys_of(const RobustnessRecord& found) {
   const DriveRecord &step = found.drives.front(), &own = found.drives.back();
   const auto before = [&](const std::string& value) { return found.drives.size() > 1 ? "plain step " + value : std::string(); };
   std::vector<KeyNumber> keys{
-      {.name = "Bounce-free", .value = percent(own.bounce_free.value), .change = before(percent(step.bounce_free.value))}};
+      {.name = "Bounce-free", .value = share_text(own.bounce_free.value), .change = before(share_text(step.bounce_free.value))}};
   for (const std::string_view key : drawn_figures) {
     const Figure& f = figure_of(key);
     const auto value = [&](const DriveRecord& d) {

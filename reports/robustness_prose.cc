@@ -108,8 +108,8 @@ const EstimatedQuantile& quantile_95(const RobustnessRecord::Drive& drive, std::
 }
 
 std::string yield_text(const Yield& yield) {
-  return fmt::format("{} ({} to {})", percent(yield.value), plain_number(100 * yield.interval.low),
-                     plain_number(100 * yield.interval.high));
+  return fmt::format("{} ({} to {})", share_text(yield.value), share_number(yield.interval.low),
+                     share_number(yield.interval.high));
 }
 
 std::string quantile_text(const EstimatedQuantile& q, std::string_view unit) {

@@ -15,8 +15,8 @@ namespace softland {
 namespace {
 
 using internal::escaped;
-using internal::percent;
 using internal::quantity;
+using internal::share_text;
 
 std::string bounces_prose(int count) {
   return count == 0 ? "without a bounce" : count == 1 ? "with one bounce" : fmt::format("with {} bounces", count);
@@ -277,20 +277,20 @@ internal::Picture picture_of(const TuningReport& report) {
 
 std::vector<KeyNumber> keys_of(const TuningReport& report) {
   const PredictedRecord& p = report.kept.predicted;
-  return {
-      {.name = "Closings",
-       .value = fmt::format("{}", learned(report)),
-       .change = report.bounce_free_in_a_row > 0 ? fmt::format("the last {} bounce-free", report.bounce_free_in_a_row)
-                                                 : "the last one bounced"},
-      {.name = "Predicted touch",
-       .value = quantity(p.touch_median, "s"),
-       .change = fmt::format("plain step on the nominal design {}", quantity(report.step_closing_time, "s"))},
-      {.name = "Predicted rebound, 95th percentile",
-       .value = p.rebound_high == 0 ? "none" : quantity(p.rebound_high, "m", 2),
-       .change = p.rebound_high == 0
-                     ? "by the present estimate"
-                     : fmt::format("median {}", internal::quantity_beside(p.rebound_median, p.rebound_high, "m", 2))},
-      {.name = "Probability of a bounce", .value = percent(p.bounces), .change = "over the devices that agree with the records"}};
+  const std::string bounces = share_text(p.bounces);
+  return {{.name = "Closings",
+           .value = fmt::format("{}", learned(report)),
+           .change = report.bounce_free_in_a_row > 0 ? fmt::format("the last {} bounce-free", report.bounce_free_in_a_row)
+                                                     : "the last one bounced"},
+          {.name = "Predicted touch",
+           .value = quantity(p.touch_median, "s"),
+           .change = fmt::format("plain step on the nominal design {}", quantity(report.step_closing_time, "s"))},
+          {.name = "Predicted rebound, 95th percentile",
+           .value = p.rebound_high == 0 ? "none" : quantity(p.rebound_high, "m", 2),
+           .change = p.rebound_high == 0
+                         ? "by the present estimate"
+                         : fmt::format("median {}", internal::quantity_beside(p.rebound_median, p.rebound_high, "m", 2))},
+          {.name = "Probability of a bounce", .value = bounces, .change = "over the devices that agree with the records"}};
 }
 
 }  // namespace

@@ -46,8 +46,8 @@ namespace softland::apps {
 namespace {
 
 namespace fs = std::filesystem;
-using internal::percent;
 using internal::quantity;
+using internal::share_text;
 
 // Returns a sentence that compares the found waveform with the plain step on devices with the process variation of [spread];
 // empty if the scene has no process variation, or after a request to stop.
@@ -64,7 +64,7 @@ std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, c
       return quantity(drive.figures[figure].quantiles[2].value, figure.unit);
     };
     const auto words = [&](const DriveRobustness& drive) {
-      if (drive.closing.value < 0.95) return fmt::format("{} close", percent(drive.closing.value));
+      if (drive.closing.value < 0.95) return fmt::format("{} close", share_text(drive.closing.value));
       return fmt::format("95th percentile: highest rebound {}, largest impact velocity {}",
                          at_95_percent(drive, key_of(&Metrics::major_bounce_height)),
                          at_95_percent(drive, key_of(&Metrics::largest_impact_velocity)));
@@ -74,7 +74,7 @@ std::string on_devices(const Common& c, const PreparedScene& winner, int jobs, c
            wrapped(fmt::format(
                "On {} devices varied by [spread], with the same waveform: {} bounce-free, {} (plain step: {}, {}).{} More: "
                "softland robustness {}",
-               devices, percent(own.bounce_free.value), words(own), percent(step.bounce_free.value), words(step),
+               devices, share_text(own.bounce_free.value), words(own), share_text(step.bounce_free.value), words(step),
                internal::outside_prose(found), shell_word((place / "best.toml").string()))) +
            "\n";
   } catch (const Interrupted&) {

@@ -243,6 +243,19 @@ TEST(Times, EndAtAThousand) {
   EXPECT_EQ(relative_change(1e6), "> × 1000");
 }
 
+TEST(Share, IsFullOnlyForAllAndNoneOnlyForNone) {
+  EXPECT_EQ(share_text(0.212), "21.2 %");
+  EXPECT_EQ(share_text(127.0 / 128), "99.2 %");
+  EXPECT_EQ(share_text(1), "100 %");
+  EXPECT_EQ(share_text(0), "0.0 %");
+  EXPECT_EQ(share_text(2999.0 / 3000), "> 99.9 %");
+  EXPECT_EQ(share_text(1.0 / 3000), "< 0.1 %");
+  EXPECT_EQ(share_text(0.1 * 3 + 0.7), "100 %");
+  EXPECT_EQ(share_text(1 - (0.7 + 0.2 + 0.1)), "0.0 %") << "a rounding error is no device";
+  EXPECT_EQ(share_text(std::numeric_limits<double>::quiet_NaN()), "—");
+  EXPECT_EQ(share_number(0.25), "25.0");
+}
+
 TEST(Quantity, BeyondThePrefixesHasAnExponent) {
   EXPECT_EQ(quantity(1e300, "s"), "1e300\u00a0s");
   EXPECT_EQ(quantity(-1.797e308, "V"), "−1.8e308\u00a0V") << "rounded it would be infinite";

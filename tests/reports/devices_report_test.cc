@@ -90,7 +90,7 @@ TEST(DevicesReport, SaysFirstWhatDevicesDo) {
   const std::string text = terminal_text(closing_document(result)), page = page_html(closing_document(result));
   EXPECT_EQ(text.find("Of 2000 simulated devices"), 0U);
   for (const char* part : {"plain step", "fast: fast.toml", "default: best.toml", "Vdp to 1 %", "107 (118)\u00a0mm/s", "732 (",
-                           "∞", "0.0 / 25 / 100 %", "500\u00a0µs"})
+                           "∞", "0.0 / 25.0 / 100 %", "500\u00a0µs"})
     EXPECT_THAT(text, HasSubstr(part));
   EXPECT_THAT(text, Not(HasSubstr("drawing.toml  "))) << "on the page";
   for (const char* part :

@@ -39,7 +39,7 @@ IdentificationStudy study() {
 TEST(MeasurementReport, OfATerminalRanksWhatIsMeasured) {
   const std::string text = text_of(record_of(study(), {.seed = 7}, ""));
   for (const char* words :
-       {"4 devices under process variation", "\nVdp ", "1.2 %", "3.4 %", "50.0 % (28 to 72)", "mm/s (50 to 200)",
+       {"4 devices under process variation", "\nVdp ", "1.2 %", "3.4 %", "50.0 % (28.0 to 72.0)", "mm/s (50 to 200)",
         "For comparison", "\nnothing ", "Seed 7.", "Pairs that do no", "better than one of their figures are left out: 1."})
     EXPECT_THAT(text, HasSubstr(words));
   EXPECT_THAT(text, Not(HasSubstr("Vdp and frequency"))) << "it does worse than Vdp alone";
