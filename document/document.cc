@@ -280,9 +280,7 @@ std::string page_html(const Document& document) {
     for (const auto& part : section.parts) parts += std::visit(OnPage{drawn}, part);
     if (!parts.empty()) body += section_html(section.id, escaped(section.heading), parts);
   }
-  std::vector<std::string> warnings = document.warnings;
-  warnings.insert(warnings.end(), document.page_warnings.begin(), document.page_warnings.end());
-  body += warnings_section(warnings) + reproduce(document.made) + scene_of(document.made);
+  body += warnings_section(document.warnings) + reproduce(document.made) + scene_of(document.made);
   const std::string title = escaped(printable_line(document.title));
   return filled(page_file("page/page.html"), {{"page_title", title.empty() ? "softland report" : title + " – softland"},
                                               {"style", document.style.empty() ? chart_style() : document.style},

@@ -96,7 +96,6 @@ struct Document {
   std::vector<KeyNumber> keys;
   std::vector<ReportSection> sections;
   std::vector<std::string> warnings;
-  std::vector<std::string> page_warnings = {};  ///< warnings that only the page shows, besides those of the terminal
   std::function<internal::Picture()> draw;      ///< returns the charts for the page's script; may be empty
   MadeAgain made = {};                          ///< version, command, scene and seed that gave the results
   /// CSS and HTML that the page needs for pictures other than the charts of `draw`.

@@ -20,7 +20,6 @@
 #include "reports/motion_figure.h"
 #include "reports/record.h"
 #include "reports/seeds_report.h"
-#include "studies/closing/summits_at_hold.h"
 
 namespace softland {
 namespace {
@@ -371,11 +370,7 @@ Document closing_document(const ClosingRecord& result) {
                     .warnings = result.warnings,
                     .draw = [&result] { return picture(result); },
                     .made = made_again(result.origin, {}, result.tolerance)};
-  if (result.search) {  // warnings about few contact asperities go to the page only: the terminal text of a search is short
-    const auto few = std::stable_partition(document.warnings.begin(), document.warnings.end(),
-                                           [](const std::string& one) { return !is_few_summits_warning(one); });
-    document.page_warnings.assign(few, document.warnings.end());
-    document.warnings.erase(few, document.warnings.end());
+  if (result.search) {
     document.made.seed = result.search->seed;
     document.made.reproduce = result.search->reproduce;
     for (const std::string& word : {result.search->target, result.search->actuator}) {
