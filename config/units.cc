@@ -401,7 +401,7 @@ std::string percent_text(double value) {
   const auto e = text.find('e');
   int exponent = 0;  // from_chars accepts no plus sign in front
   std::from_chars(text.data() + e + (text[e + 1] == '+' ? 2 : 1), end, exponent);
-  const int shift = exponent + 2;  // of the point, to the right
+  const int shift = exponent + 2;  // the point moves to the right by so many digits
   constexpr int most_digits = 15;
   if (shift < 0 || shift > most_digits) return fmt::format("{}e{} %", text.substr(0, e), shift);
   std::string number(text.substr(0, e));

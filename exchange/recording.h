@@ -93,7 +93,7 @@ struct TimeAxis {
 [[nodiscard]] TimeAxis time_axis(const Recording& recording);
 
 /// Describes the times of rows: "every 1 us, from 0 s to 2 us", "at 3 us" for one row. Intervals that differ by more than the
-/// rounding of times are "at intervals of 1 us to 5 us". At least one row.
+/// rounding of times are "at intervals of 1 us to 5 us". There must be at least one row.
 [[nodiscard]] std::string times_prose(const TimeAxis& axis);
 
 /// Returns one line about a recording: format, channels, samples, interval, first and last time, and what was left out.
