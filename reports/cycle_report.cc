@@ -109,8 +109,9 @@ std::string finding(const CycleRecord& r) {
     return std::isfinite(rate) ? "at rates of up to " + quantity(rate, "Hz") : std::string("at no rate of the scan");
   };
   if (r.drives.size() == 1) return fmt::format("With plain steps every cycle closes like the first one {}.", at(plain.largest));
-  return fmt::format("With these waveforms every cycle closes like the first one {}; with plain steps, {}.", at(found.largest),
-                     at(plain.largest));
+  const bool is_slower = std::isfinite(plain.largest) && !(found.largest >= plain.largest);
+  return fmt::format("With these waveforms every cycle closes like the first one {}; with plain steps, {}.{}", at(found.largest),
+                     at(plain.largest), is_slower ? " The waveforms lower the rate of cycling." : "");
 }
 
 std::string name_words(const CycleRecord& r, const CycleRecord::Drive& drive) {

@@ -73,7 +73,7 @@ ReleaseRecord::Gap gap_of(const OpeningResult& r, const Opening& o) {
 }
 
 std::string gain(double plain, double best) {
-  if (!(plain > 0) || !(best > 0) || !std::isfinite(plain) || best >= plain) return {};
+  if (!(plain > 0) || !(best > 0) || !std::isfinite(plain) || best > (1 - least_gain) * plain) return {};
   return internal::times(plain / best) + " less";
 }
 
@@ -90,11 +90,13 @@ std::string finding(const ReleaseRecord& r) {
   const auto ends = [](const OpeningFigures& f) {
     if (!std::isfinite(f.release_time)) return std::string("stays closed");
     return std::isfinite(f.settling_time) ? fmt::format("is at rest after {}", quantity(f.settling_time, "s"))
-                                          : std::string("still vibrates when the window ends");
+                                          : std::string("is not yet at rest when the window ends");
   };
-  std::string words = fmt::format("Switched off abruptly, the beam {}", ends(plain));
-  if (r.best) words += fmt::format("; with the found waveform it {}", ends(r.best->figures));
-  return words + ".";
+  const std::string words = fmt::format("Switched off abruptly, the beam {}", ends(plain));
+  if (!r.best) return words + ".";
+  if (gains(r.best->figures, plain)) return fmt::format("{}; with the found waveform it {}.", words, ends(r.best->figures));
+  return fmt::format("{}. No waveform is recommended: the best one {}, a gain below {}.", words, ends(r.best->figures),
+                     percent(least_gain));
 }
 
 // Describes how the figures of merit of the opening were computed and confirmed.
@@ -105,6 +107,11 @@ std::string remarks(const ReleaseRecord& r) {
       quantity(r.band, "m"), percent(r.band_share));
   if (!r.best) return words + " No waveform was found that opens the switch.";
   words += fmt::format(" The search simulated {} waveforms, with seed {}.", r.evaluations, r.seed);
+  if (r.best->drives_end > r.plain.drives_end)
+    words += fmt::format(
+        " The found waveform ends after {}, the abrupt one after {}. A cycle closes the switch again after its end only, so "
+        "that the waveform may lower the rate of cycling: softland cycle compares both.",
+        quantity(r.best->drives_end, "s"), quantity(r.plain.drives_end, "s"));
   for (const ConfirmingOpening& c : r.checks) {
     words += fmt::format(" Simulated again with {}: {}.", c.name,
                          std::isfinite(c.figures.residual_vibration)

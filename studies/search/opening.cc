@@ -156,16 +156,6 @@ bool is_open_with_drives(const OpeningFigures& f, double band) {
   return f.status == Status::done && f.residual_vibration <= band;
 }
 
-// True if the opening `a` is better than `b`: it settles earlier near the open position, or, if neither settles, it leaves less
-// vibration.
-bool better(const OpeningFigures& a, const OpeningFigures& b) {
-  if (!std::isfinite(a.release_time)) return false;
-  if (!std::isfinite(b.release_time)) return true;
-  const bool a_settles = std::isfinite(a.settling_time), b_settles = std::isfinite(b.settling_time);
-  if (a_settles != b_settles) return a_settles;
-  return a_settles ? a.settling_time < b.settling_time : a.residual_vibration < b.residual_vibration;
-}
-
 double quantile_95(const std::vector<OpeningFigures>& openings, double OpeningFigures::*figure) {
   std::vector<double> values;
   for (const OpeningFigures& of_device : openings) {
@@ -316,6 +306,15 @@ Corners BrakePulses::corners(const Brake& brake, std::span<const double> x) cons
   return all;
 }
 
+bool gains(const OpeningFigures& a, const OpeningFigures& b) {
+  if (!std::isfinite(a.release_time)) return false;
+  if (!std::isfinite(b.release_time)) return true;
+  const bool a_settles = std::isfinite(a.settling_time), b_settles = std::isfinite(b.settling_time);
+  if (a_settles != b_settles) return a_settles;
+  constexpr double most = 1 - least_gain;
+  return a_settles ? a.settling_time <= most * b.settling_time : a.residual_vibration <= most * b.residual_vibration;
+}
+
 OpeningResult search_opening(const SceneFile& file, const OpeningOptions& options, const Progress& progress) {
   require(options.band > 0 && options.band < 1, fmt::format("band = {}: must be above 0 and below 1 contact gap", options.band));
   OpeningResult r{.given = prepare_and_choose(file, true, progress), .options = options};
@@ -356,7 +355,7 @@ OpeningResult search_opening(const SceneFile& file, const OpeningOptions& option
   for (const Device& richer : with_more_modes(given.scene.device))
     check(fmt::format("modes {}", richer.structure.modes), Switch(richer, quadrature_of_richer(given.quadrature, richer)),
           given.tolerance);
-  r.better = better(r.best->figures, r.plain.figures);
+  r.better = gains(r.best->figures, r.plain.figures);
   const auto meets_goal = [&](const auto& run) { return is_open_with_drives(run.figures, r.band); };
   r.goal_met = meets_goal(*r.best);
   r.confirmed = r.goal_met && std::all_of(r.checks.begin(), r.checks.end(), meets_goal);

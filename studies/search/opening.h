@@ -116,6 +116,12 @@ struct OpeningsOnDevices {
   DeviceOpenings plain, best;
 };
 
+/// Least relative reduction of the settling time or of the residual vibration for which an opening waveform is recommended.
+inline constexpr double least_gain = 0.05;
+/// Returns true if the opening `a` gains over `b`: it settles earlier near the open position by `least_gain`, or, if neither
+/// settles, leaves less vibration by `least_gain`. An opening that settles gains over one that does not.
+[[nodiscard]] bool gains(const OpeningFigures& a, const OpeningFigures& b);
+
 struct OpeningResult {
   PreparedScene given;
   OpeningOptions options;
@@ -135,8 +141,7 @@ struct OpeningResult {
   /// Figures of the openings of varied devices; none if not requested, or if no waveform opens the switch.
   std::optional<OpeningsOnDevices> on_devices;
   OptimizerResult search;
-  /// True if the best opening settles earlier than the plain opening, or, if neither settles, vibrates less.
-  bool better = false;
+  bool better = false;  ///< true if gains() holds for the best opening against the plain one
   /// True if the best opening stays within the band about the open position from when all drives are at 0 V.
   bool goal_met = false;
   bool confirmed = false;  ///< true if the simulations `checks` confirm the best opening

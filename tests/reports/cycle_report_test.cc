@@ -66,6 +66,18 @@ TEST(CyclePage, DrawsTheRatesThatWereTried) {
   EXPECT_EQ(page_html(document_of(cycled_record())).find("class=\"steady\""), std::string::npos);
 }
 
+TEST(CyclePage, SaysWhereTheWaveformsLowerTheRate) {
+  CycleRecord record = cycled_record();
+  record.drives.push_back(record.drives.front());
+  for (CycleRecord::Drive& drive : record.drives) drive.steady_rates = {1e3};
+  record.drives[0].largest = 50e3;
+  record.drives[1].largest = 17e3;
+  EXPECT_THAT(document_of(record).headline,
+              HasSubstr("with plain steps, at rates of up to 50.0\u00a0kHz. The waveforms lower the rate"));
+  record.drives[1].largest = 60e3;
+  EXPECT_EQ(document_of(record).headline.find("lower"), std::string::npos);
+}
+
 TEST_F(PageInBrowser, DrawsCyclesInSilenceAndTellsWhenTheContactIsClosed_browser) {
   const std::string page = page_html(document_of(cycled_record()));
   EXPECT_LT(page.size(), 1'000'000U);

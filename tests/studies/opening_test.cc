@@ -81,6 +81,24 @@ TEST(OpeningResult, OfAnUndampedPlateIsThatOfItsClosedForm) {
   EXPECT_LT(found.best->figures.residual_vibration, 0.01 * 2.6e-6);
 }
 
+TEST(Gains, NeedAtLeastFivePercent) {
+  const double never = OpeningFigures::unset;
+  const auto figures = [](double release, double settling, double vibration) {
+    return OpeningFigures{
+        .status = Status::done, .release_time = release, .settling_time = settling, .residual_vibration = vibration};
+  };
+  const OpeningFigures plain = figures(1e-6, 20e-6, 1e-6), vibrates = figures(1e-6, never, 1e-6),
+                       stays = figures(never, never, never);
+  EXPECT_TRUE(gains(figures(1e-6, 18.9e-6, 1e-6), plain));
+  EXPECT_FALSE(gains(figures(1e-6, 19.1e-6, 1e-9), plain)) << "the settling time counts";
+  EXPECT_TRUE(gains(figures(1e-6, never, 0.94e-6), vibrates));
+  EXPECT_FALSE(gains(figures(1e-6, never, 0.96e-6), vibrates));
+  EXPECT_TRUE(gains(plain, vibrates));
+  EXPECT_FALSE(gains(vibrates, plain));
+  EXPECT_TRUE(gains(vibrates, stays));
+  EXPECT_FALSE(gains(stays, plain));
+}
+
 TEST(OpeningResult, StopsTheShippedSwitchesInTheirBand_slow) {
   for (const char* name : {"mem-gold.toml", "mem-gold-pzt.toml", "nem-tin.toml", "two-electrodes.toml"}) {
     const OpeningResult r = search_opening(scene(name), {.jobs = 2});
