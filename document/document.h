@@ -96,8 +96,8 @@ struct Document {
   std::vector<KeyNumber> keys;
   std::vector<ReportSection> sections;
   std::vector<std::string> warnings;
-  std::function<internal::Picture()> draw;      ///< returns the charts for the page's script; may be empty
-  MadeAgain made = {};                          ///< version, command, scene and seed that gave the results
+  std::function<internal::Picture()> draw;  ///< returns the charts for the page's script; may be empty
+  MadeAgain made = {};                      ///< version, command, scene and seed that gave the results
   /// CSS and HTML that the page needs for pictures other than the charts of `draw`.
   std::string style = {}, scripts = {};
 };
