@@ -190,8 +190,10 @@ class EntryReader {
       parts.pop_back();
     }
     const std::size_t due = is_sample ? 2 : 3;
-    require(parts.size() == due, is_sample ? "must be KEY=LOW:HIGH or KEY=LOW:HIGH:log where points are sampled"
-                                           : "must be KEY=LOW:HIGH:N, KEY=LOW:HIGH:N:log or KEY=A,B,C");
+    require(parts.size() == due,
+            is_sample
+                ? "must be KEY=LOW:HIGH or KEY=LOW:HIGH:log where points are sampled"
+                : "must be KEY=LOW:HIGH:N, KEY=LOW:HIGH:N:log or KEY=A,B,C; KEY=LOW:HIGH requires a sample, such as sobol:64");
     const std::vector<Quantity> ends = read({parts[0], parts[1]});
     variable_.low = ends[0].value;
     variable_.high = ends[1].value;
