@@ -94,7 +94,7 @@ std::string spread_of_laws(const Effects& effects) {
   }
   if (!is_closed) return "The gas laws cannot be compared: the switch does not close under that of the scene.";
   return words.empty()
-             ? "There is no relative range of the figures over the gas laws: the switch does not close under all of them."
+             ? "There is no relative range of the figures over the gas laws: the switch does not close under some of them."
              : "Relative range of the figures over the gas laws (largest minus smallest value, over that of the scene): " +
                    words + ".";
 }
