@@ -12,6 +12,7 @@
 #include "reports/closing_prose.h"
 #include "reports/devices_report.h"
 #include "reports/record.h"
+#include "reports/robustness_prose.h"
 #include "studies/closing/hold.h"
 
 namespace softland::internal {
