@@ -85,10 +85,11 @@ double hardest(const CycleRecord::Drive& drive, double Metrics::*figure) {
 
 // Describes what the switch does in the cycles of a drive that the report shows: "does not open in every cycle".
 std::string outcome_of(const CycleRecord::Drive& drive) {
-  const bool sticks = std::ranges::any_of(drive.cycles, [](const auto& c) { return !std::isfinite(c.metrics.opening_time); });
-  const bool misses = std::ranges::any_of(drive.cycles, [](const auto& c) { return !c.metrics.touched(); });
   if (drive.cycles.empty()) return "could not be simulated";
-  if (misses || sticks) return fmt::format("does not {} in every cycle", misses ? "close" : "open");
+  // A switch that stays closed does not touch in the next cycle either: the first cycle that fails gives the reason.
+  const auto fails = [](const auto& c) { return !c.metrics.touched() || !std::isfinite(c.metrics.opening_time); };
+  if (const auto first = std::ranges::find_if(drive.cycles, fails); first != drive.cycles.end())
+    return fmt::format("does not {} in every cycle", first->metrics.touched() ? "open" : "close");
   const double height = hardest(drive, &Metrics::major_bounce_height);
   return fmt::format("has impact velocities of up to {} and {}",
                      quantity(hardest(drive, &Metrics::largest_impact_velocity), "m/s"),
