@@ -86,12 +86,12 @@ std::string words_after(const LimitRecord::Landing& landing) {
 std::string words_of_catch(const LimitRecord::Landing& landing, double permitted) {
   constexpr double same = 1.5;  // largest ratio of the simulated impact velocity to the permitted one that needs no word
   const double pulled = landing.catch_time - landing.catch_delay, ratio = landing.metrics.impact_velocity / permitted;
-  std::string words = "soft landing";
+  std::string words = "landing";
   if (pulled > 0) {
     words += fmt::format(" with a pulse of {}", quantity(pulled, "s"));
     words += landing.catch_delay > 0 ? fmt::format(", {} after the touch", quantity(landing.catch_delay, "s")) : " at the touch";
   }
-  return ratio > same ? fmt::format("{}, {:.0f} times as fast as permitted", words, ratio) : words;
+  return ratio > same ? fmt::format("{}, at {:.0f} times the permitted velocity", words, ratio) : words;
 }
 
 ReportTable touches_table(const LimitRecord& limit) {
@@ -353,10 +353,15 @@ std::string svg_of(const LimitRecord& limit) {
   }
   const bool found = limit.touch.status == Status::done;
   const std::string model = model_of(limit);
-  const std::string headline = found ? fmt::format("The fastest waveform that was found touches after {} at {} or less{}",
-                                                   quantity(limit.touch.time, "s", 4), quantity(limit.impact_velocity, "m/s"),
-                                                   model.empty() ? "" : fmt::format(", with {}", model))
-                                     : "The least time was not found: " + why_not(limit.touch);
+  std::string headline = found ? fmt::format("The fastest waveform that was found touches after {} at {} or less{}",
+                                             quantity(limit.touch.time, "s", 4), quantity(limit.impact_velocity, "m/s"),
+                                             model.empty() ? "" : fmt::format(", with {}", model))
+                               : "The least time was not found: " + why_not(limit.touch);
+  if (limit.landing) {
+    const Metrics& drawn_run = limit.landing->metrics;
+    headline += fmt::format(". The closing that is drawn lands after {} at {}", quantity(drawn_run.initial_contact_time, "s", 4),
+                            quantity(drawn_run.impact_velocity, "m/s"));
+  }
   return svg_page(headline, title_of(limit.origin), drawn, 1);
 }
 
