@@ -389,7 +389,7 @@ ReportSection internal::choices_section(const DevicesFindings& d) {
   if (d.rows.empty()) return section;
   section.parts.emplace_back(choices_table(d));
   section.parts.emplace_back(
-      Paragraph{"The last column is the share of devices whose highest rebound is at most 1, 10 and 100 nm."});
+      Paragraph{"≤ 1 / 10 / 100 nm is the share of devices whose highest rebound is at most 1, 10 and 100 nm."});
   std::string words = fmt::format("Process variation: {}.", d.spread);
   for (const std::string& more : {path_prose(d), delay_prose(d), measuring_prose(d), nominal_prose(d)})
     words += (more.empty() ? "" : " ") + more;
